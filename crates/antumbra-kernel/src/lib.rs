@@ -1,0 +1,13 @@
+//! *What is the sign?* The arithmetic of Antumbra: an integer grid, fixed-width integers and
+//! predicates that return exact signs.
+//!
+//! Floats occur in two places only: [`Grid`], which snaps the scene once, and the filters inside
+//! the predicates, each with its proved error bound written beside it.
+
+mod grid;
+mod point;
+mod sign;
+
+pub use grid::{Grid, Rounding, SnapError};
+pub use point::{Aabb, LIMIT, Plane, Point, cross, sub};
+pub use sign::Sign;

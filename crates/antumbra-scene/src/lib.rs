@@ -1,0 +1,9 @@
+//! *Where are things?* Object space: snapped polygonal scenes, their kD-tree and view cells.
+//!
+//! This crate never sees a line: what can be seen is decided where it meets line space.
+
+mod kd;
+mod scene;
+
+pub use kd::{KdNode, KdTree};
+pub use scene::{Object, ObjectId, PolygonId, PolygonRef, Scene};

@@ -1,0 +1,143 @@
+//! The scene: named objects made of convex planar polygons on the integer grid.
+
+use std::ops::Range;
+
+use antumbra_kernel::{Aabb, Grid, Plane, Point};
+
+use crate::kd::KdTree;
+
+/// The number of an object, zero-based in the order of the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ObjectId(pub u32);
+
+/// The number of a polygon of a scene; the polygons of an object are consecutive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PolygonId(pub u32);
+
+impl ObjectId {
+    /// The number as an index.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+impl PolygonId {
+    /// The number as an index.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A set of polygons with one name: the unit of every potentially visible set.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Object {
+    /// The name in the file, or the decimal id where the file has none. Need not be unique.
+    pub name: String,
+    /// The class that occluder policies refer to, as written in the file.
+    pub class: Option<String>,
+    /// Whether its polygons block lines.
+    pub occludes: bool,
+    /// Its polygons, as a range of [`PolygonId`]s; may be empty.
+    pub polygons: Range<u32>,
+}
+
+/// A closed, convex, planar polygon of the scene, seen in place.
+#[derive(Clone, Copy, Debug)]
+pub struct PolygonRef<'a> {
+    /// Its number.
+    pub id: PolygonId,
+    /// The object it belongs to.
+    pub object: ObjectId,
+    /// At least three corners in order, exactly coplanar, strictly convex but for collinear
+    /// corners on its edges (inserted where a foreign vertex touched).
+    pub corners: &'a [Point],
+    /// Its plane; the corners turn counter-clockwise about the normal.
+    pub plane: &'a Plane,
+    /// Whether it blocks lines.
+    pub occludes: bool,
+}
+
+impl PolygonRef<'_> {
+    /// The smallest box around the polygon.
+    #[must_use]
+    pub fn bounds(&self) -> Aabb {
+        Aabb::around(self.corners.iter().copied()).expect("a polygon has corners")
+    }
+}
+
+/// An immutable snapped scene with its kD-tree. Made by [`crate::SceneBuilder`].
+#[derive(Clone, Debug)]
+pub struct Scene {
+    pub(crate) grid: Grid,
+    pub(crate) objects: Vec<Object>,
+    pub(crate) corners: Vec<Point>,
+    /// `corners[first[i]..first[i + 1]]` are the corners of polygon `i`.
+    pub(crate) first: Vec<u32>,
+    pub(crate) planes: Vec<Plane>,
+    pub(crate) owners: Vec<ObjectId>,
+    pub(crate) bounds: Aabb,
+    pub(crate) kd: KdTree,
+}
+
+impl Scene {
+    /// The grid all coordinates refer to.
+    #[must_use]
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// All objects; index = [`ObjectId`].
+    #[must_use]
+    pub fn objects(&self) -> &[Object] {
+        &self.objects
+    }
+
+    /// One object.
+    #[must_use]
+    pub fn object(&self, id: ObjectId) -> &Object {
+        &self.objects[id.index()]
+    }
+
+    /// How many polygons there are.
+    #[must_use]
+    pub fn polygon_count(&self) -> usize {
+        self.planes.len()
+    }
+
+    /// One polygon.
+    ///
+    /// # Panics
+    /// If the scene has no such polygon.
+    #[inline]
+    #[must_use]
+    pub fn polygon(&self, id: PolygonId) -> PolygonRef<'_> {
+        let i = id.index();
+        let object = self.owners[i];
+        PolygonRef {
+            id,
+            object,
+            corners: &self.corners[self.first[i] as usize..self.first[i + 1] as usize],
+            plane: &self.planes[i],
+            occludes: self.objects[object.index()].occludes,
+        }
+    }
+
+    /// All polygons in order.
+    pub fn polygons(&self) -> impl Iterator<Item = PolygonRef<'_>> {
+        (0..self.planes.len()).map(|i| self.polygon(PolygonId(i as u32)))
+    }
+
+    /// The smallest box around all polygons (a point at the origin if there are none).
+    #[must_use]
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// The spatial hierarchy over all polygons.
+    #[must_use]
+    pub fn kd(&self) -> &KdTree {
+        &self.kd
+    }
+}
