@@ -2,8 +2,10 @@
 //!
 //! This crate never sees a line: what can be seen is decided where it meets line space.
 
+mod input;
 mod kd;
 mod scene;
 
+pub use input::{Faces, ObjectInput, OccluderPolicy, PartInput, SceneInput};
 pub use kd::{KdNode, KdTree};
 pub use scene::{Object, ObjectId, PolygonId, PolygonRef, Scene};

@@ -35,10 +35,9 @@ impl PolygonId {
 pub struct Object {
     /// The name in the file, or the decimal id where the file has none. Need not be unique.
     pub name: String,
-    /// The class that occluder policies refer to, as written in the file.
+    /// The class of its first part, as written in the file. Parts may differ: whether a polygon
+    /// blocks lines is said by [`PolygonRef::occludes`].
     pub class: Option<String>,
-    /// Whether its polygons block lines.
-    pub occludes: bool,
     /// Its polygons, as a range of [`PolygonId`]s; may be empty.
     pub polygons: Range<u32>,
 }
@@ -77,6 +76,7 @@ pub struct Scene {
     pub(crate) first: Vec<u32>,
     pub(crate) planes: Vec<Plane>,
     pub(crate) owners: Vec<ObjectId>,
+    pub(crate) occludes: Vec<bool>,
     pub(crate) bounds: Aabb,
     pub(crate) kd: KdTree,
 }
@@ -120,7 +120,7 @@ impl Scene {
             object,
             corners: &self.corners[self.first[i] as usize..self.first[i + 1] as usize],
             plane: &self.planes[i],
-            occludes: self.objects[object.index()].occludes,
+            occludes: self.occludes[i],
         }
     }
 
