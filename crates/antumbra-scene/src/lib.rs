@@ -2,8 +2,14 @@
 //!
 //! This crate never sees a line: what can be seen is decided where it meets line space.
 
+mod builder;
+mod input;
 mod kd;
+mod report;
 mod scene;
 
-pub use kd::{KdNode, KdTree};
+pub use builder::{BuildError, SceneBuilder};
+pub use input::{Faces, ObjectInput, OccluderPolicy, PartInput, SceneInput};
+pub use kd::{KdBox, KdHeuristic, KdNode, KdTree, SeenPolygons};
+pub use report::{BuildReport, ObjectRepairs, RepairCounts};
 pub use scene::{Object, ObjectId, PolygonId, PolygonRef, Scene};
