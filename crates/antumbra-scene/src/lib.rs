@@ -3,12 +3,16 @@
 //! This crate never sees a line: what can be seen is decided where it meets line space.
 
 mod builder;
+mod cells;
 mod input;
 mod kd;
 mod report;
 mod scene;
 
 pub use builder::{BuildError, SceneBuilder};
+pub use cells::{
+    CellError, CellKind, CellSpec, CellSpecError, MAX_CELLS, NamedBox, ViewCell, make_cells,
+};
 pub use input::{Faces, ObjectInput, OccluderPolicy, PartInput, SceneInput};
 pub use kd::{KdBox, KdHeuristic, KdNode, KdTree, SeenPolygons};
 pub use report::{BuildReport, ObjectRepairs, RepairCounts};
