@@ -2,6 +2,7 @@
 
 mod blocker;
 mod caster;
+mod check;
 mod cover;
 mod gates;
 mod line;
@@ -14,6 +15,7 @@ mod verdict;
 
 pub use blocker::RowName;
 pub use caster::Caster;
+pub use check::{CheckReport, check_cell};
 pub use line::{FINE_BITS, FinePoint};
 pub use proof::{CellProof, Claim, GateProof, Node, ProofError, Reason, Target, Tree};
 pub use region::{BakeOptions, Baker};
