@@ -33,6 +33,13 @@ pub enum RowName {
         /// The polygon.
         polygon: PolygonId,
     },
+    /// The line from a corner of the source gate to a corner of the target gate.
+    Chord {
+        /// Number of the source gate's corner.
+        from: u32,
+        /// Number of the target gate's corner.
+        to: u32,
+    },
 }
 
 /// The lines that cross one occluder in one direction, between source and target.

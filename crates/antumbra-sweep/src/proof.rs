@@ -202,6 +202,7 @@ const IGNORED: u8 = 3;
 const EDGE: u8 = 4;
 const SOURCE_LINE: u8 = 6;
 const TARGET_LINE: u8 = 8;
+const CHORD: u8 = 10;
 
 fn put(out: &mut Vec<u8>, mut v: u64) {
     while v >= 0x80 {
@@ -226,15 +227,16 @@ fn put_tree(out: &mut Vec<u8>, tree: &Tree) {
             Node::Ignored => out.push(IGNORED),
             Node::Split { row, negative } => {
                 let flag = u8::from(negative);
-                let (kind, polygon) = match row {
-                    RowName::Edge { polygon, .. } => (EDGE, polygon),
-                    RowName::SourceLine { polygon } => (SOURCE_LINE, polygon),
-                    RowName::TargetLine { polygon } => (TARGET_LINE, polygon),
+                let (kind, first, second) = match row {
+                    RowName::Edge { polygon, edge } => (EDGE, polygon.0, Some(edge)),
+                    RowName::SourceLine { polygon } => (SOURCE_LINE, polygon.0, None),
+                    RowName::TargetLine { polygon } => (TARGET_LINE, polygon.0, None),
+                    RowName::Chord { from, to } => (CHORD, from, Some(to)),
                 };
                 out.push(kind + flag);
-                put(out, u64::from(polygon.0));
-                if let RowName::Edge { edge, .. } = row {
-                    put(out, u64::from(edge));
+                put(out, u64::from(first));
+                if let Some(second) = second {
+                    put(out, u64::from(second));
                 }
             }
         }
@@ -326,6 +328,10 @@ impl Reader<'_> {
                         },
                         negative,
                     },
+                    CHORD => {
+                        let row = RowName::Chord { from: self.index()?, to: self.index()? };
+                        Node::Split { row, negative }
+                    }
                     _ => return Err(self.error("an unknown node kind")),
                 },
             };

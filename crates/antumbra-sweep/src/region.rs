@@ -292,7 +292,7 @@ impl<'a> CellBake<'a> {
             4.0 * f64::from(antumbra_kernel::LIMIT) / d.iter().map(|c| c.abs()).fold(0.0, f64::max);
         let segment = Segment::new(p, std::array::from_fn(|k| p[k] + d[k] * reach));
         let caster = &self.baker.caster;
-        let absent = &self.absent;
+        let absent = self.absent.clone();
         let first = caster.first_hit(&segment, (0.0, 1.0), |id| {
             caster.occludes(id) && !absent.contains(&id.0)
         });
@@ -688,7 +688,6 @@ impl<'a> CellBake<'a> {
 
     fn count(&mut self, why: Undecided) {
         match why {
-            Undecided::NotPointed => self.searcher.work.not_pointed += 1,
             Undecided::Budget => self.searcher.work.over_budget += 1,
             Undecided::Thin => self.searcher.work.thin += 1,
         }

@@ -50,8 +50,6 @@ pub(crate) enum Answer {
 /// Why a search ended without an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Undecided {
-    /// The polygons share a stretch of the common line of their planes: subdivide first.
-    NotPointed,
     /// The budget of splits is used up.
     Budget,
     /// Real lines exist but none was found in doubles, or cones grew too complex.
@@ -73,8 +71,6 @@ pub struct Work {
     pub exact_signs: u64,
     /// Full decisions about real lines.
     pub real_decisions: u64,
-    /// Questions left undecided because no pointed cone exists.
-    pub not_pointed: u64,
     /// Questions left undecided by a budget.
     pub over_budget: u64,
     /// Questions left undecided because a cone was too thin or too complex.
@@ -137,19 +133,35 @@ impl Searcher {
         let start = match start_halfspaces(&mut self.space, question.from, question.to) {
             Ok(start) => start,
             Err(ConeError::Flat) => return Answer::NoLines,
-            Err(_) => return Answer::Undecided(Undecided::NotPointed),
+            Err(_) => return Answer::Undecided(Undecided::Thin),
         };
-        let root = match Cone::new(&mut self.space, &start) {
-            Ok(cone) => cone,
-            Err(ConeError::Flat) => return Answer::NoLines,
-            Err(_) => return Answer::Undecided(Undecided::NotPointed),
-        };
-        let mut frame = Frame {
-            question,
-            cones: HashMap::new(),
-        };
+        let mut frame = Frame { question, cones: HashMap::new() };
         let mut slots = vec![Slot::Open];
-        let mut stack = vec![(root, 0_usize)];
+        let mut stack = Vec::new();
+        match start.chord {
+            None => match Cone::new(&mut self.space, &start.halfspaces) {
+                Ok(cone) => stack.push((cone, 0_usize)),
+                Err(ConeError::Flat) => return Answer::NoLines,
+                Err(_) => return Answer::Undecided(Undecided::Thin),
+            },
+            Some(chord) => {
+                let row = RowName::Chord { from: chord.from, to: chord.to };
+                let node = Node::Split { row, negative: false };
+                slots[0] = Slot::Split { node, inside: 1, outside: 2 };
+                for (slot, h) in [(1, chord.halfspace), (2, chord.halfspace.opposite())] {
+                    let mut halfspaces = start.halfspaces.clone();
+                    halfspaces.push(h);
+                    match Cone::new(&mut self.space, &halfspaces) {
+                        Ok(cone) => {
+                            slots.push(Slot::Open);
+                            stack.push((cone, slot));
+                        }
+                        Err(ConeError::Flat) => slots.push(Slot::Done(Node::Imaginary)),
+                        Err(_) => return Answer::Undecided(Undecided::Thin),
+                    }
+                }
+            }
+        }
         let limit = self.work.splits.saturating_add(budget);
         while let Some((cone, slot)) = stack.pop() {
             match self.treat(&mut frame, cone, slot, &mut slots, &mut stack, rng) {
@@ -179,20 +191,21 @@ impl Searcher {
         stack: &mut Vec<(Cone, usize)>,
         rng: &mut Random,
     ) -> Result<(), Answer> {
+        // Most parts outside of a blocker hold no real line, and the signs of a few hundred pairs
+        // of vertices tell: cheaper than to sample in vain.
+        self.work.real_decisions += 1;
+        if real_lines(&mut self.space, &cone) == RealLines::None {
+            slots[slot] = Slot::Done(Node::Imaginary);
+            return Ok(());
+        }
         let mut sampler = Sampler::new(&self.space, &cone);
         let mut lines = Vec::with_capacity(SAMPLES);
         sampler.lines(rng, SAMPLES, &mut lines);
+        if lines.len() < SAMPLES / 2 {
+            sampler.persist(rng, SAMPLES / 2, &mut lines);
+        }
         if lines.is_empty() {
-            self.work.real_decisions += 1;
-            if real_lines(&mut self.space, &cone) == RealLines::None {
-                slots[slot] = Slot::Done(Node::Imaginary);
-                return Ok(());
-            }
-            let mut sampler = Sampler::new(&self.space, &cone);
-            sampler.persist(rng, &mut lines);
-            if lines.is_empty() {
-                return Err(Answer::Undecided(Undecided::Thin));
-            }
+            return Err(Answer::Undecided(Undecided::Thin));
         }
         self.work.samples += lines.len() as u64;
         let blocker = self.choose(frame, &cone, &lines)?;
