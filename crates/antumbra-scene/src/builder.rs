@@ -3,10 +3,12 @@
 //! Object by object, and each object by these steps: vertices go to the grid and equal positions
 //! become one ([`snap`]); faces become strictly convex planar patches ([`clean`]); the slits that
 //! snapping opened between an edge and the vertices beside it are closed ([`seal`]); patches that
-//! occur twice are dropped; coplanar neighbors are merged ([`merge`]). Nothing after the first
+//! occur twice are dropped; coplanar neighbors are merged ([`merge`]) and what others cover is
+//! dropped ([`cover`]). Nothing after the first
 //! step changes the set of points that the occluders cover, except that slits are closed.
 
 mod clean;
+mod cover;
 mod error;
 mod merge;
 mod near;
@@ -222,9 +224,8 @@ fn object_patches(
     let sealed = seal::seal(&welder.points, &mut patches);
     counts.inserted = sealed.vertices;
     counts.sealing = sealed.triangles;
-    let mut merged = merge::merge(&welder.points, patches);
-    // Layers that were cut differently may have become equal.
-    counts.duplicate += drop_duplicates(&mut merged);
+    let (merged, covered) = merge::merge(&welder.points, patches);
+    counts.covered = covered;
     (merged, counts)
 }
 
