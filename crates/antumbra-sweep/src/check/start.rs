@@ -106,7 +106,10 @@ fn cap(t: &Row, w: &Row, sign: i128, mu: i128) -> Option<(u32, super::fast::Fast
             .checked_add(sign * i128::from(t[k]))?;
     }
     let row = narrow(row)?;
-    Some((<super::fast::Fast as super::numbers::Numbers>::excess(&row), row))
+    Some((
+        <super::fast::Fast as super::numbers::Numbers>::excess(&row),
+        row,
+    ))
 }
 
 /// The smallest `mu >= 0` with `+t + mu w >= 0` and with `-t + mu w >= 0` on all lines between
@@ -117,7 +120,9 @@ fn corner_multipliers(from: &Gate, to: &Gate, t: &Row, w: &Row) -> [Option<i128>
         for &b in &to.corners {
             let line = line_through(a, b);
             let value = |row: &Row| -> i128 {
-                (0..6).map(|k| i128::from(row[k]) * i128::from(line[k])).sum()
+                (0..6)
+                    .map(|k| i128::from(row[k]) * i128::from(line[k]))
+                    .sum()
             };
             let (t, w) = (value(t), value(w));
             for (mu, need) in mu.iter_mut().zip([-t, t]) {

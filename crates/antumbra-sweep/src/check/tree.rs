@@ -78,9 +78,9 @@ fn walk(question: &Question<'_>, tree: &Tree, start: Piece) -> Result<(), String
                 .hyperplane(row)
                 .map_err(|what| format!("node {number}: {what}"))?
                 .turned(negative);
-            parts = piece
-                .cut(&row)
-                .map_err(|trouble| format!("node {number}: the piece cannot be cut ({trouble:?})"))?;
+            parts = piece.cut(&row).map_err(|trouble| {
+                format!("node {number}: the piece cannot be cut ({trouble:?})")
+            })?;
             rows = [Some(row.clone()), Some(row.turned(true))];
         }
         let depth = path.len();
@@ -261,7 +261,7 @@ fn sides(polygon: &PolygonRef<'_>, plane: &Plane) -> Vec<Sign> {
 
 /// Whether an edge has both ends on the unwanted side or in the plane, but not both in it.
 fn wholly_behind(a: Sign, b: Sign) -> bool {
-    !a.is_positive() && !b.is_positive() && !(a.is_zero() && b.is_zero())
+    !a.is_positive() && !b.is_positive() && (a.is_negative() || b.is_negative())
 }
 
 fn on_both_sides(sides: &[Sign]) -> bool {
