@@ -6,6 +6,7 @@ use antumbra_kernel::Sign;
 use dashu_int::IBig;
 use dashu_int::ops::{BitTest, UnsignedAbs};
 
+use super::fast::FILTER;
 use super::modular::prime;
 use super::numbers::Numbers;
 
@@ -51,6 +52,24 @@ impl Wide {
             exact: Rc::new(std::array::from_fn(|k| -&self.exact[k])),
             approx: self.approx.map(|c| -c),
         }
+    }
+}
+
+/// The sign of a scalar product of rounded vectors, if it is certain: their coordinates are off
+/// by less than 2 each, products and sums by less than 2^-48 of their magnitudes.
+fn scaled(a: &[f64; 6], b: [f64; 6]) -> Option<Sign> {
+    let mut sum = 0.0;
+    let mut slack = 64.0;
+    for (a, b) in a.iter().zip(b) {
+        sum += a * b;
+        slack += (a * b).abs() * FILTER + 4.0 * (a.abs() + b.abs());
+    }
+    if sum > slack {
+        Some(Sign::Positive)
+    } else if sum < -slack {
+        Some(Sign::Negative)
+    } else {
+        None
     }
 }
 
@@ -112,22 +131,8 @@ impl Numbers for Big {
     }
 
     fn sign(row: &Wide, vertex: &Wide) -> Sign {
-        let mut sum = 0.0;
-        // What rounding of the factors (2 each) and of the sums may hide.
-        let mut slack = 64.0;
-        for k in 0..6 {
-            let t = row.approx[k] * vertex.approx[k];
-            sum += t;
-            slack += t.abs() * super::fast::FILTER
-                + 4.0 * (row.approx[k].abs() + vertex.approx[k].abs());
-        }
-        if sum > slack {
-            Sign::Positive
-        } else if sum < -slack {
-            Sign::Negative
-        } else {
-            sign_of(&dot(&row.exact, &vertex.exact))
-        }
+        scaled(&row.approx, vertex.approx)
+            .unwrap_or_else(|| sign_of(&dot(&row.exact, &vertex.exact)))
     }
 
     fn residues(row: &Wide) -> [u64; 6] {
@@ -194,7 +199,9 @@ impl Numbers for Big {
     }
 
     fn bilinear_sign(v: &Wide, w: &Wide) -> Sign {
-        sign_of(&Self::bilinear(v, w))
+        let a = w.approx;
+        scaled(&v.approx, [a[3], a[4], a[5], a[0], a[1], a[2]])
+            .unwrap_or_else(|| sign_of(&Self::bilinear(v, w)))
     }
 
     fn form_sign(form: &IBig) -> Sign {
@@ -205,8 +212,16 @@ impl Numbers for Big {
         b * b > q * r * IBig::from(4)
     }
 
-    fn wide(row: &Wide) -> [IBig; 6] {
+    fn wide_row(row: &Wide) -> [IBig; 6] {
         (*row.exact).clone()
+    }
+
+    fn wide_vertex(vertex: &Wide) -> [IBig; 6] {
+        (*vertex.exact).clone()
+    }
+
+    fn approximate(vertex: &Wide) -> &[f64; 6] {
+        &vertex.approx
     }
 }
 

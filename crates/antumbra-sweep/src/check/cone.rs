@@ -60,7 +60,7 @@ impl<N: Numbers> Cone<N> {
             .iter()
             .partition(|row| basis.rank() < 6 && basis.insert(N::residues(row)));
         let first: [&N::Row; 6] = first.try_into().map_err(|_| Trouble::NotPointed)?;
-        if first.iter().map(|r| N::excess(r)).sum::<u32>() > N::ROOM {
+        if !fits::<N>(first.iter().copied()) {
             return Err(Trouble::TooWide);
         }
         let rays = (0..6)
@@ -101,7 +101,7 @@ impl<N: Numbers> Cone<N> {
 
     /// Whether a row can be added without leaving the range of the numbers.
     pub(super) fn has_room(&self, row: &N::Row) -> bool {
-        N::excess(row) + self.rows.iter().map(N::excess).sum::<u32>() <= N::ROOM
+        fits::<N>(self.rows.iter().chain([row]))
     }
 
     /// The parts inside and outside a half-space; `None` for a part without interior.
@@ -272,6 +272,23 @@ impl<N: Numbers> Cone<N> {
     }
 }
 
+/// Whether any five of some rows stay within the range of the numbers.
+fn fits<'a, N: Numbers>(rows: impl Iterator<Item = &'a N::Row>) -> bool
+where
+    N::Row: 'a,
+{
+    let mut largest = [0; 5];
+    for row in rows {
+        let mut excess = N::excess(row);
+        for place in &mut largest {
+            if excess > *place {
+                std::mem::swap(place, &mut excess);
+            }
+        }
+    }
+    largest.iter().sum::<u32>() <= N::ROOM
+}
+
 fn lie(signs: &[Sign]) -> Lie {
     if !signs.contains(&Sign::Negative) {
         Lie::Inside
@@ -352,7 +369,7 @@ mod tests {
                 continue;
             };
             sanity(&cone);
-            let wide: Vec<Wide> = rows.iter().map(|r| Wide::new(Fast::wide(r))).collect();
+            let wide: Vec<Wide> = rows.iter().map(|r| Wide::new(Fast::wide_row(r))).collect();
             let big = Cone::<Big>::of(&wide).expect("pointed").expect("interior");
             assert_eq!(
                 (big.rays.len(), big.rows.len()),

@@ -1,9 +1,9 @@
 //! Fixed-width numbers: rows of machine integers, vertices of 256 bits, behind a double filter.
 //!
 //! Edge rows have 47-bit moments and 24-bit directions (magnitudes), so that vertices have 195
-//! bits and forms 371. A row may exceed that by some bits; the sum of the excesses of all rows of a
-//! cone stays within [`Numbers::ROOM`] = 12, so that 2x2 minors of directions fit 64 bits
-//! (49 + 12), those of moments 128 (95 + 12), scalar products 256 (221 + 24), forms 512 (371 + 24).
+//! bits and forms 371. A row may exceed that by some bits; the sum of the excesses of any five rows
+//! of a cone stays within [`Numbers::ROOM`] = 14, so that 2x2 minors of directions fit 63 bits
+//! (49 + 14), those of moments 127 (95 + 14), scalar products 255 (221 + 28), forms 511 (371 + 28).
 
 use antumbra_kernel::plucker::{self, Row, bilinear, cofactors, quadric};
 use antumbra_kernel::{I256, I512, Int, Sign};
@@ -47,10 +47,6 @@ impl FastVertex {
             exact,
             approx: exact.map(|c| c.to_f64_scaled(0)),
         }
-    }
-
-    pub(super) fn wide(&self) -> [IBig; 6] {
-        std::array::from_fn(|k| big(&self.exact[k]))
     }
 }
 
@@ -100,7 +96,7 @@ impl Numbers for Fast {
     type Vertex = FastVertex;
     type Form = I512;
 
-    const ROOM: u32 = 12;
+    const ROOM: u32 = 14;
 
     fn excess(row: &FastRow) -> u32 {
         let bits = |c: &[i64]| {
@@ -167,7 +163,15 @@ impl Numbers for Fast {
             .is_positive()
     }
 
-    fn wide(row: &FastRow) -> [IBig; 6] {
+    fn wide_row(row: &FastRow) -> [IBig; 6] {
         row.exact.map(IBig::from)
+    }
+
+    fn wide_vertex(vertex: &FastVertex) -> [IBig; 6] {
+        std::array::from_fn(|k| big(&vertex.exact[k]))
+    }
+
+    fn approximate(vertex: &FastVertex) -> &[f64; 6] {
+        &vertex.approx
     }
 }

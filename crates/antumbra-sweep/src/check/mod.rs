@@ -9,6 +9,7 @@ mod claims;
 mod cone;
 mod ends;
 mod fast;
+mod middle;
 mod modular;
 mod numbers;
 mod piece;

@@ -1,5 +1,5 @@
-//! What the double description needs of its numbers, so that it is written once for fixed widths
-//! and once more never: big integers take over where a row is too wide.
+//! What the double description needs of its numbers, so that it is written once for all widths:
+//! wider ones take over where a row does not fit.
 
 use antumbra_kernel::Sign;
 use dashu_int::IBig;
@@ -14,7 +14,7 @@ pub(super) trait Numbers: Sized {
     /// A value of the Plücker quadric or its bilinear form.
     type Form;
 
-    /// The largest sum of [`Numbers::excess`] over the rows of one cone.
+    /// The largest sum of [`Numbers::excess`] over five rows of one cone.
     const ROOM: u32;
 
     /// How many bits a row is wider than an edge row.
@@ -51,5 +51,11 @@ pub(super) trait Numbers: Sized {
     fn crosses(b: &Self::Form, q: &Self::Form, r: &Self::Form) -> bool;
 
     /// The coefficients as big integers.
-    fn wide(row: &Self::Row) -> [IBig; 6];
+    fn wide_row(row: &Self::Row) -> [IBig; 6];
+
+    /// The coordinates as big integers.
+    fn wide_vertex(vertex: &Self::Vertex) -> [IBig; 6];
+
+    /// The coordinates rounded, up to a power of two.
+    fn approximate(vertex: &Self::Vertex) -> &[f64; 6];
 }

@@ -1,14 +1,13 @@
-//! Pieces of line space between two gates, with fixed-width or with big numbers.
-
-use antumbra_kernel::Sign;
+//! Pieces of line space between two gates, in the narrowest numbers that hold them.
 
 use super::big::{Big, Wide, primitive};
 use super::cone::{Cone, Ray, Trouble};
 use super::ends::Gate;
 use super::fast::{Fast, FastRow};
+use super::middle::{Middle, MiddleRow, MiddleVertex, middle_sign};
 use super::numbers::Numbers;
 use super::real::holds_real_lines;
-use super::rows::{Hyperplane, sign_at};
+use super::rows::Hyperplane;
 use super::start::{corner_lines, start_rows};
 
 /// A cone with interior.
@@ -16,6 +15,8 @@ use super::start::{corner_lines, start_rows};
 pub(super) enum Piece {
     /// In fixed widths.
     Fast(Cone<Fast>),
+    /// In twice the width.
+    Middle(Cone<Middle>),
     /// In big integers.
     Big(Cone<Big>),
 }
@@ -32,17 +33,18 @@ impl Piece {
 
     /// The piece of some half-spaces; `None` if it has no interior.
     fn of(rows: &[Hyperplane]) -> Result<Option<Self>, Trouble> {
-        let narrow: Option<Vec<FastRow>> = rows
-            .iter()
-            .map(|row| match row {
-                Hyperplane::Narrow(row) => Some(row.clone()),
-                Hyperplane::Wide(_) => None,
-            })
-            .collect();
+        let narrow: Option<Vec<FastRow>> = rows.iter().map(|r| r.narrow().cloned()).collect();
         if let Some(rows) = narrow {
             match Cone::of(&rows) {
                 Err(Trouble::TooWide) => {}
                 done => return Ok(done?.map(Self::Fast)),
+            }
+        }
+        let middle: Option<Vec<MiddleRow>> = rows.iter().map(Hyperplane::middle).collect();
+        if let Some(rows) = middle {
+            match Cone::of(&rows) {
+                Err(Trouble::TooWide) => {}
+                done => return Ok(done?.map(Self::Middle)),
             }
         }
         let rows: Vec<Wide> = rows.iter().map(Hyperplane::wide).collect();
@@ -53,40 +55,50 @@ impl Piece {
     pub(super) fn within(&self, row: &Hyperplane) -> bool {
         match (self, row) {
             (Self::Fast(cone), Hyperplane::Narrow(row)) => cone.within(row),
-            (Self::Fast(cone), Hyperplane::Wide(row)) => cone
-                .rays
-                .iter()
-                .all(|ray| !sign_at(row, &ray.vertex).is_negative()),
+            (Self::Fast(cone), Hyperplane::Middle(row)) => {
+                let mut rays = cone.rays.iter();
+                rays.all(|ray| !middle_sign(row, &ray.vertex).is_negative())
+            }
+            (Self::Fast(cone), row) => row.holds_on(cone),
+            (Self::Middle(cone), row) => match row.middle() {
+                Some(row) => cone.within(&row),
+                None => row.holds_on(cone),
+            },
             (Self::Big(cone), row) => cone.within(&row.wide()),
         }
     }
 
     /// The parts inside and outside a half-space; `None` for a part without interior.
     pub(super) fn cut(self, row: &Hyperplane) -> Result<[Option<Self>; 2], Trouble> {
-        match (self, row) {
-            (Self::Fast(cone), Hyperplane::Narrow(row)) if cone.has_room(row) => {
-                Ok(cone.cut(row)?.map(|part| part.map(Self::Fast)))
-            }
-            (Self::Fast(cone), row) => {
-                let wide = row.wide();
-                let on = |side: Sign| {
-                    let mut rays = cone.rays.iter();
-                    rays.any(|ray| sign_at(&wide, &ray.vertex) == side)
-                };
-                match (on(Sign::Positive), on(Sign::Negative)) {
-                    (_, false) => Ok([Some(Self::Fast(cone)), None]),
-                    (false, true) => Ok([None, Some(Self::Fast(cone))]),
-                    (true, true) => Self::Big(widened(&cone)).cut(row),
-                }
-            }
-            (Self::Big(cone), row) => Ok(cone.cut(&row.wide())?.map(|part| part.map(Self::Big))),
+        match &self {
+            Self::Fast(cone) if row.narrow().is_some_and(|r| cone.has_room(r)) => {}
+            Self::Middle(cone) if row.middle().is_some_and(|r| cone.has_room(&r)) => {}
+            Self::Big(_) => {}
+            // Numbers must get wider if the row really cuts.
+            _ if self.within(row) => return Ok([Some(self), None]),
+            _ if self.within(&row.clone().turned(true)) => return Ok([None, Some(self)]),
+            Self::Fast(cone) => return Self::Middle(doubled(cone)).cut(row),
+            Self::Middle(cone) => return Self::Big(widened(cone)).cut(row),
         }
+        let parts = match self {
+            Self::Fast(cone) => match row.narrow() {
+                Some(row) => cone.cut(row)?.map(|part| part.map(Self::Fast)),
+                None => return Err(Trouble::TooWide),
+            },
+            Self::Middle(cone) => match row.middle() {
+                Some(row) => cone.cut(&row)?.map(|part| part.map(Self::Middle)),
+                None => return Err(Trouble::TooWide),
+            },
+            Self::Big(cone) => cone.cut(&row.wide())?.map(|part| part.map(Self::Big)),
+        };
+        Ok(parts)
     }
 
     /// Whether an open set of real lines is in the piece.
     pub(super) fn holds_real_lines(&self) -> bool {
         match self {
             Self::Fast(cone) => holds_real_lines(cone),
+            Self::Middle(cone) => holds_real_lines(cone),
             Self::Big(cone) => holds_real_lines(cone),
         }
     }
@@ -108,15 +120,34 @@ pub(super) fn hull(from: &Gate, to: &Gate) -> Result<Vec<Hyperplane>, Trouble> {
         .collect())
 }
 
-/// The same cone in big integers.
-pub(super) fn widened(cone: &Cone<Fast>) -> Cone<Big> {
+/// The same cone in twice the width.
+pub(super) fn doubled(cone: &Cone<Fast>) -> Cone<Middle> {
     Cone {
-        rows: cone.rows.iter().map(|r| Wide::new(Fast::wide(r))).collect(),
+        rows: cone.rows.iter().map(MiddleRow::of).collect(),
         rays: cone
             .rays
             .iter()
             .map(|ray| Ray {
-                vertex: Wide::new(ray.vertex.wide()),
+                vertex: MiddleVertex::of(&ray.vertex),
+                tight: ray.tight,
+            })
+            .collect(),
+    }
+}
+
+/// The same cone in big integers.
+pub(super) fn widened<N: Numbers>(cone: &Cone<N>) -> Cone<Big> {
+    Cone {
+        rows: cone
+            .rows
+            .iter()
+            .map(|row| Wide::new(N::wide_row(row)))
+            .collect(),
+        rays: cone
+            .rays
+            .iter()
+            .map(|ray| Ray {
+                vertex: Wide::new(N::wide_vertex(&ray.vertex)),
                 tight: ray.tight,
             })
             .collect(),

@@ -61,7 +61,7 @@ fn in_a_face<N: Numbers>(cone: &Cone<N>, i: usize, j: usize) -> bool {
     for (a, &x) in tight.iter().enumerate() {
         for (b, &y) in tight.iter().enumerate().skip(a + 1) {
             for &z in &tight[b + 1..] {
-                let lines = [x, y, z].map(|k| N::wide(&cone.rows[k]));
+                let lines = [x, y, z].map(|k| N::wide_row(&cone.rows[k]));
                 if pairwise_skew(&lines) && conic_inside(cone, &lines, 1 << x | 1 << y | 1 << z) {
                     return true;
                 }
@@ -91,7 +91,7 @@ fn conic_inside<N: Numbers>(cone: &Cone<N>, lines: &[[IBig; 6]; 3], three: u128)
         return false;
     }
     let rows: Vec<(bool, [IBig; 6])> = (0..cone.rows.len())
-        .map(|k| (full >> k & 1 == 1, N::wide(&cone.rows[k])))
+        .map(|k| (full >> k & 1 == 1, N::wide_row(&cone.rows[k])))
         .collect();
     // A line at infinity has no finite points to start from; then another one serves.
     let Some(base) = (0..3).find(|&k| lines[k][3..].iter().any(|c| *c != IBig::ZERO)) else {
@@ -234,9 +234,11 @@ mod tests {
     }
 
     #[test]
-    fn big_numbers_agree() {
+    fn wider_numbers_agree() {
         for cell in cells() {
+            let middle = super::super::piece::doubled(&cell);
             let wide = super::super::piece::widened(&cell);
+            assert_eq!(holds_real_lines(&cell), holds_real_lines(&middle));
             assert_eq!(holds_real_lines(&cell), holds_real_lines(&wide));
         }
     }

@@ -4,8 +4,10 @@ use antumbra_kernel::plucker::{Row, edge_row};
 use antumbra_kernel::{Plane, Point, Sign};
 use dashu_int::IBig;
 
-use super::big::{Wide, dot, primitive, sign_of};
-use super::fast::{FILTER, Fast, FastRow, FastVertex};
+use super::big::{Big, Wide, dot, primitive, sign_of};
+use super::cone::Cone;
+use super::fast::{FILTER, Fast, FastRow};
+use super::middle::{Middle, MiddleRow};
 use super::numbers::Numbers;
 
 /// A half-space with coefficients as wide as they must be.
@@ -13,6 +15,8 @@ use super::numbers::Numbers;
 pub(super) enum Hyperplane {
     /// Machine integers.
     Narrow(FastRow),
+    /// 128-bit integers.
+    Middle(MiddleRow),
     /// Big integers.
     Wide(Wide),
 }
@@ -32,10 +36,8 @@ impl Hyperplane {
         let term = |i: usize, j: usize| n[i] * o[j] - n[j] * o[i];
         let d = [term(1, 2), term(2, 0), term(0, 1)];
         let moment = |k: usize| n[k].checked_mul(e)?.checked_sub(o[k].checked_mul(c)?);
-        if let (Some(x), Some(y), Some(z)) = (moment(0), moment(1), moment(2))
-            && let Some(row) = narrow([x, y, z, d[0], d[1], d[2]])
-        {
-            return Self::Narrow(row);
+        if let (Some(x), Some(y), Some(z)) = (moment(0), moment(1), moment(2)) {
+            return Self::of_small([x, y, z, d[0], d[1], d[2]]);
         }
         let moment = |k: usize| IBig::from(n[k]) * IBig::from(e) - IBig::from(o[k]) * IBig::from(c);
         let row = [
@@ -49,6 +51,16 @@ impl Hyperplane {
         Self::of_big(primitive(row))
     }
 
+    fn of_small(row: [i128; 6]) -> Self {
+        let row = reduced(row);
+        match narrow(row) {
+            Some(row) => Self::Narrow(row),
+            // The most negative value has no opposite.
+            None if row.contains(&i128::MIN) => Self::Wide(Wide::new(row.map(IBig::from))),
+            None => Self::Middle(MiddleRow::new(row)),
+        }
+    }
+
     /// From big coefficients without a common factor.
     pub(super) fn of_big(row: [IBig; 6]) -> Self {
         let mut small = [0_i128; 6];
@@ -58,10 +70,7 @@ impl Hyperplane {
                 Err(_) => return Self::Wide(Wide::new(row)),
             }
         }
-        match narrow(small) {
-            Some(row) => Self::Narrow(row),
-            None => Self::Wide(Wide::new(row)),
-        }
+        Self::of_small(small)
     }
 
     /// The complement if `negative`.
@@ -69,33 +78,66 @@ impl Hyperplane {
         match (negative, self) {
             (false, row) => row,
             (true, Self::Narrow(row)) => Self::Narrow(Fast::complement(&row)),
-            (true, Self::Wide(row)) => Self::Wide(super::big::Big::complement(&row)),
+            (true, Self::Middle(row)) => Self::Middle(Middle::complement(&row)),
+            (true, Self::Wide(row)) => Self::Wide(Big::complement(&row)),
         }
     }
 
-    /// With big coefficients.
+    /// As machine integers, if they fit.
+    pub(super) fn narrow(&self) -> Option<&FastRow> {
+        match self {
+            Self::Narrow(row) => Some(row),
+            _ => None,
+        }
+    }
+
+    /// As 128-bit integers, if they fit.
+    pub(super) fn middle(&self) -> Option<MiddleRow> {
+        match self {
+            Self::Narrow(row) => Some(MiddleRow::of(row)),
+            Self::Middle(row) => Some(row.clone()),
+            Self::Wide(_) => None,
+        }
+    }
+
+    /// As big integers.
     pub(super) fn wide(&self) -> Wide {
         match self {
-            Self::Narrow(row) => Wide::new(Fast::wide(row)),
+            Self::Narrow(row) => Wide::new(Fast::wide_row(row)),
+            Self::Middle(row) => Wide::new(Middle::wide_row(row)),
             Self::Wide(row) => row.clone(),
         }
     }
+
+    /// Whether no ray of a cone in narrower numbers is outside.
+    pub(super) fn holds_on<N: Numbers>(&self, cone: &Cone<N>) -> bool {
+        let wide = self.wide();
+        let mut rays = cone.rays.iter();
+        rays.all(|ray| !sign_at::<N>(&wide, &ray.vertex).is_negative())
+    }
 }
 
-/// The row divided by its greatest common divisor, if a fixed-width cone has room for it.
-pub(super) fn narrow(row: [i128; 6]) -> Option<FastRow> {
+/// The row divided by its greatest common divisor.
+pub(super) fn reduced(row: [i128; 6]) -> [i128; 6] {
     let mut divisor = 0_u128;
     // Directions first: they are shorter and often coprime.
     for k in [3, 4, 5, 0, 1, 2] {
         divisor = gcd(divisor, row[k].unsigned_abs());
         if divisor == 1 {
-            break;
+            return row;
         }
     }
-    let divisor = i128::try_from(divisor.max(1)).ok()?;
+    match i128::try_from(divisor) {
+        Ok(divisor) if divisor > 0 => row.map(|c| c / divisor),
+        _ => row,
+    }
+}
+
+/// The row in machine integers, if a fixed-width cone has room for it.
+pub(super) fn narrow(row: [i128; 6]) -> Option<FastRow> {
     let mut out: Row = [0; 6];
-    for k in 0..6 {
-        out[k] = i64::try_from(row[k] / divisor).ok()?;
+    for (to, from) in out.iter_mut().zip(row) {
+        *to = i64::try_from(from).ok()?;
     }
     let row = FastRow::new(out);
     (out.iter().all(|c| *c != i64::MIN) && Fast::excess(&row) <= Fast::ROOM).then_some(row)
@@ -108,11 +150,12 @@ fn gcd(mut a: u128, mut b: u128) -> u128 {
     a
 }
 
-/// The sign of a wide row at a fixed-width vertex, exact.
-pub(super) fn sign_at(row: &Wide, vertex: &FastVertex) -> Sign {
+/// The sign of a wide row at a vertex of narrower numbers, exact. The row's rounded coefficients
+/// are off by less than 2, the vertex's by less than 2^-51 of themselves.
+fn sign_at<N: Numbers>(row: &Wide, vertex: &N::Vertex) -> Sign {
     let mut sum = 0.0;
     let mut slack = 0.0;
-    for (a, b) in row.approx().iter().zip(&vertex.approx) {
+    for (a, b) in row.approx().iter().zip(N::approximate(vertex)) {
         sum += a * b;
         slack += (a * b).abs() * FILTER + 4.0 * b.abs();
     }
@@ -121,7 +164,7 @@ pub(super) fn sign_at(row: &Wide, vertex: &FastVertex) -> Sign {
     } else if sum < -slack {
         Sign::Negative
     } else {
-        sign_of(&dot(&row.exact, &vertex.wide()))
+        sign_of(&dot(&row.exact, &N::wide_vertex(vertex)))
     }
 }
 
@@ -129,15 +172,18 @@ pub(super) fn sign_at(row: &Wide, vertex: &FastVertex) -> Sign {
 mod tests {
     use super::{Hyperplane, sign_at};
     use crate::check::fast::{Fast, FastRow, FastVertex};
+    use crate::check::middle::middle_sign;
     use crate::check::numbers::Numbers;
     use antumbra_kernel::plucker::line_through;
     use antumbra_kernel::{I256, Plane, Point, Sign};
 
     fn sign(row: &Hyperplane, a: Point, b: Point) -> Sign {
         let line = FastVertex::new(line_through(a, b).map(I256::from_i64));
-        let wide = sign_at(&row.wide(), &line);
-        if let Hyperplane::Narrow(row) = row {
-            assert_eq!(Fast::sign(row, &line), wide);
+        let wide = sign_at::<Fast>(&row.wide(), &line);
+        match row {
+            Hyperplane::Narrow(row) => assert_eq!(Fast::sign(row, &line), wide),
+            Hyperplane::Middle(row) => assert_eq!(middle_sign(row, &line), wide),
+            Hyperplane::Wide(_) => {}
         }
         wide
     }
@@ -152,7 +198,7 @@ mod tests {
         let odd = Plane::through(p(far, 3, -far), p(7, far, far), p(-far, 1 - far, 11));
         for (plane, wide) in [(steep, false), (odd, true), (odd.flipped(), true)] {
             let row = Hyperplane::common_line(&base, &plane);
-            assert_eq!(matches!(row, Hyperplane::Wide(_)), wide);
+            assert_eq!(row.narrow().is_none(), wide);
             // Through each grid point of the plane along the normal, above and below the base.
             for s in 0..40_i32 {
                 let (a, b) = (p(s * 1000 - 20_000, 13 * s, -far + 1), p(5, s, far - 7));

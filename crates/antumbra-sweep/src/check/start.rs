@@ -12,14 +12,16 @@ use dashu_int::IBig;
 
 use super::big::dot;
 use super::ends::Gate;
-use super::rows::{Hyperplane, narrow};
+use super::fast::{Fast, FastRow};
+use super::numbers::Numbers;
+use super::rows::{Hyperplane, narrow, reduced};
 
 /// Rows of pointed cones that together hold all real lines between two gates.
 pub(super) fn start_rows(from: &Gate, to: &Gate) -> Vec<Vec<Hyperplane>> {
     let edges = edge_rows(from, to);
     let mut rows: Vec<Hyperplane> = edges
         .iter()
-        .map(|&row| Hyperplane::Narrow(super::fast::FastRow::new(row)))
+        .map(|&row| Hyperplane::Narrow(FastRow::new(row)))
         .collect();
     if from.straddles(&to.plane) && to.straddles(&from.plane) {
         rows.push(Hyperplane::common_line(&from.plane, &to.plane));
@@ -30,7 +32,7 @@ pub(super) fn start_rows(from: &Gate, to: &Gate) -> Vec<Vec<Hyperplane>> {
     let caps = caps(from, to, &t, &edges);
     if caps.is_empty() {
         // Any row that is not zero on the common line makes two pointed halves.
-        let half = Hyperplane::Narrow(super::fast::FastRow::new(t));
+        let half = Hyperplane::Narrow(FastRow::new(t));
         let with = |row: Hyperplane| rows.iter().cloned().chain([row]).collect();
         return vec![with(half.clone()), with(half.turned(true))];
     }
@@ -82,7 +84,7 @@ fn caps(from: &Gate, to: &Gate, t: &Row, edges: &[Row]) -> Vec<Hyperplane> {
     } else {
         corner_multipliers(from, to, t, &w)
     };
-    let mut room = 12;
+    let mut room = Fast::ROOM;
     let mut out = Vec::new();
     let mut found: Vec<_> = [(1, multipliers[0]), (-1, multipliers[1])]
         .into_iter()
@@ -98,18 +100,15 @@ fn caps(from: &Gate, to: &Gate, t: &Row, edges: &[Row]) -> Vec<Hyperplane> {
     out
 }
 
-fn cap(t: &Row, w: &Row, sign: i128, mu: i128) -> Option<(u32, super::fast::FastRow)> {
+fn cap(t: &Row, w: &Row, sign: i128, mu: i128) -> Option<(u32, FastRow)> {
     let mut row = [0_i128; 6];
     for k in 0..6 {
         row[k] = mu
             .checked_mul(i128::from(w[k]))?
             .checked_add(sign * i128::from(t[k]))?;
     }
-    let row = narrow(row)?;
-    Some((
-        <super::fast::Fast as super::numbers::Numbers>::excess(&row),
-        row,
-    ))
+    let row = narrow(reduced(row))?;
+    Some((Fast::excess(&row), row))
 }
 
 /// The smallest `mu >= 0` with `+t + mu w >= 0` and with `-t + mu w >= 0` on all lines between
