@@ -223,7 +223,9 @@ mod tests {
         for _ in 0..40 {
             let rows: [Wide; 5] = std::array::from_fn(|_| {
                 Wide::new(std::array::from_fn(|_| {
-                    state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                    state = state
+                        .wrapping_mul(6_364_136_223_846_793_005)
+                        .wrapping_add(1);
                     IBig::from((state >> 40) as i64 % 7 - 3) << (state % 90) as usize
                 }))
             });

@@ -29,12 +29,7 @@ pub(super) fn check_claim(
 }
 
 /// One occluder covers everything.
-fn covered(
-    scene: &Scene,
-    source: &Source,
-    target: &Target,
-    by: PolygonId,
-) -> Result<(), String> {
+fn covered(scene: &Scene, source: &Source, target: &Target, by: PolygonId) -> Result<(), String> {
     if by.index() >= scene.polygon_count() {
         return Err(format!("the scene has no polygon {}", by.0));
     }
@@ -80,16 +75,14 @@ fn covered(
         ));
     }
     if !source.is_box
-        && source
-            .openings
-            .iter()
-            .flatten()
-            .any(|o| occluder.corners.iter().all(|&p| o.gate().plane.side(p).is_zero()))
+        && source.openings.iter().flatten().any(|o| {
+            occluder
+                .corners
+                .iter()
+                .all(|&p| o.gate().plane.side(p).is_zero())
+        })
     {
-        return Err(format!(
-            "polygon {} lies in the plane of the source",
-            by.0
-        ));
+        return Err(format!("polygon {} lies in the plane of the source", by.0));
     }
     let n = occluder.corners.len();
     for i in 0..n {
@@ -133,9 +126,8 @@ fn gates(
     let mut open = open_pairs(&source.openings, &targets);
     for proof in proofs {
         let key = (proof.source, proof.target);
-        let opening = |openings: &Openings, number: u32| {
-            openings.get(number as usize).and_then(Clone::clone)
-        };
+        let opening =
+            |openings: &Openings, number: u32| openings.get(number as usize).and_then(Clone::clone);
         let (Some(from), Some(to)) = (
             opening(&source.openings, proof.source),
             opening(&targets, proof.target),
@@ -157,9 +149,8 @@ fn gates(
             absent: &source.own,
             may_ignore,
         };
-        check_tree(&question, &proof.tree).map_err(|what| {
-            format!("source gate {}, target gate {}: {what}", key.0, key.1)
-        })?;
+        check_tree(&question, &proof.tree)
+            .map_err(|what| format!("source gate {}, target gate {}: {what}", key.0, key.1))?;
     }
     match open.first() {
         None => Ok(()),

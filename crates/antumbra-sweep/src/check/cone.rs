@@ -141,7 +141,9 @@ impl<N: Numbers> Cone<N> {
         }
         let part = |side: Sign, row: N::Row| {
             let own = self.rays.iter().zip(&signs).filter(|(_, s)| **s == side);
-            let rays = own.map(|(ray, _)| ray.clone()).chain(shared.iter().cloned());
+            let rays = own
+                .map(|(ray, _)| ray.clone())
+                .chain(shared.iter().cloned());
             let mut rows = self.rows.clone();
             rows.push(row);
             Self {

@@ -211,8 +211,7 @@ pub(super) fn gates_between(from: &Opening, to: &Opening) -> Option<(Gate, Gate)
     } else {
         (from.gate(), to.gate())
     };
-    let exist =
-        to.reaches(&from.plane, Sign::Positive) && from.reaches(&to.plane, Sign::Negative);
+    let exist = to.reaches(&from.plane, Sign::Positive) && from.reaches(&to.plane, Sign::Negative);
     exist.then_some((from, to))
 }
 

@@ -103,7 +103,11 @@ impl Numbers for Fast {
     const ROOM: u32 = 12;
 
     fn excess(row: &FastRow) -> u32 {
-        let bits = |c: &[i64]| c.iter().map(|c| 64 - c.unsigned_abs().leading_zeros()).max();
+        let bits = |c: &[i64]| {
+            c.iter()
+                .map(|c| 64 - c.unsigned_abs().leading_zeros())
+                .max()
+        };
         let moment = bits(&row.exact[..3]).unwrap_or(0).saturating_sub(47);
         let direction = bits(&row.exact[3..]).unwrap_or(0).saturating_sub(24);
         moment.max(direction)

@@ -140,7 +140,10 @@ impl CellCheck<'_> {
                 Ok(()) => report.visible_checked += 1,
                 Err(what) => {
                     let object = self.describe(entry.object);
-                    report.fail(self.cell, &format!("{object} is listed as visible, but {what}"));
+                    report.fail(
+                        self.cell,
+                        &format!("{object} is listed as visible, but {what}"),
+                    );
                 }
             }
             if let Some(entry) = listed.get_mut(entry.object.index()) {
@@ -180,7 +183,11 @@ impl CellCheck<'_> {
         if self.source.is_box {
             return box_contact(polygon, &self.cell.bounds) != BoxContact::Apart;
         }
-        let mut own = self.source.own.clone().map(|i| self.scene.polygon(PolygonId(i)));
+        let mut own = self
+            .source
+            .own
+            .clone()
+            .map(|i| self.scene.polygon(PolygonId(i)));
         own.any(|other| polygons_touch(polygon, &other))
     }
 
@@ -191,11 +198,9 @@ impl CellCheck<'_> {
         for (number, claim) in claims.iter().enumerate() {
             if let Err(what) = claims::check_claim(self.scene, &self.source, may_ignore, claim) {
                 let target = match claim.target {
-                    Target::Box(Aabb { min, max }) => format!(
-                        "the box from {:?} to {:?}",
-                        min.to_array(),
-                        max.to_array()
-                    ),
+                    Target::Box(Aabb { min, max }) => {
+                        format!("the box from {:?} to {:?}", min.to_array(), max.to_array())
+                    }
                     Target::Polygon(id) => format!("polygon {}", id.0),
                 };
                 report.fail(self.cell, &format!("claim {number} about {target}: {what}"));
@@ -229,7 +234,10 @@ impl CellCheck<'_> {
                 report.fail(self.cell, &what);
             } else if self.scene.polygons_of(id).any(|p| self.touches(&p)) {
                 let object = self.describe(id);
-                report.fail(self.cell, &format!("{object} touches the cell but is not listed"));
+                report.fail(
+                    self.cell,
+                    &format!("{object} touches the cell but is not listed"),
+                );
             } else {
                 report.hidden_checked += 1;
             }

@@ -128,10 +128,7 @@ fn point_on(row: &[IBig; 6], step: i64) -> ([IBig; 3], IBig) {
     let square: IBig = d.iter().map(|c| c * c).sum();
     let foot = cross(&d, &m);
     let along = IBig::from(step);
-    (
-        std::array::from_fn(|k| &foot[k] + &d[k] * &along),
-        square,
-    )
+    (std::array::from_fn(|k| &foot[k] + &d[k] * &along), square)
 }
 
 /// The line `(d; m)` through a homogeneous point that meets two others.

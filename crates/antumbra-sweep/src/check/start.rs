@@ -51,8 +51,14 @@ pub(super) fn edge_rows(from: &Gate, to: &Gate) -> Vec<Row> {
 /// The row of a line between corners off the plane of the other gate: not zero on the planes'
 /// common line. `None` if no lines leave the first gate and cross the second.
 fn transverse(from: &Gate, to: &Gate) -> Option<Row> {
-    let a = from.corners.iter().find(|&&p| to.plane.side(p).is_negative())?;
-    let b = to.corners.iter().find(|&&p| from.plane.side(p).is_positive())?;
+    let a = from
+        .corners
+        .iter()
+        .find(|&&p| to.plane.side(p).is_negative())?;
+    let b = to
+        .corners
+        .iter()
+        .find(|&&p| from.plane.side(p).is_positive())?;
     Some(edge_row(*a, *b))
 }
 
@@ -92,7 +98,10 @@ fn cap(t: &Row, w: &Row, sign: i128, mu: i128) -> Option<(u32, super::fast::Fast
             .checked_add(sign * i128::from(t[k]))?;
     }
     let row = narrow(row)?;
-    Some((<super::fast::Fast as super::numbers::Numbers>::excess(&row), row))
+    Some((
+        <super::fast::Fast as super::numbers::Numbers>::excess(&row),
+        row,
+    ))
 }
 
 /// The smallest `mu >= 0` with `+t + mu w >= 0` and with `-t + mu w >= 0` on all lines between
@@ -103,7 +112,9 @@ fn corner_multipliers(from: &Gate, to: &Gate, t: &Row, w: &Row) -> [Option<i128>
         for &b in &to.corners {
             let line = line_through(a, b);
             let value = |row: &Row| -> i128 {
-                (0..6).map(|k| i128::from(row[k]) * i128::from(line[k])).sum()
+                (0..6)
+                    .map(|k| i128::from(row[k]) * i128::from(line[k]))
+                    .sum()
             };
             let (t, w) = (value(t), value(w));
             for (mu, need) in mu.iter_mut().zip([-t, t]) {

@@ -78,9 +78,9 @@ fn walk(question: &Question<'_>, tree: &Tree, start: Piece) -> Result<(), String
                 .hyperplane(row)
                 .map_err(|what| format!("node {number}: {what}"))?
                 .turned(negative);
-            parts = piece
-                .cut(&row)
-                .map_err(|trouble| format!("node {number}: the piece cannot be cut ({trouble:?})"))?;
+            parts = piece.cut(&row).map_err(|trouble| {
+                format!("node {number}: the piece cannot be cut ({trouble:?})")
+            })?;
             rows = [Some(row.clone()), Some(row.turned(true))];
         }
         let depth = path.len();

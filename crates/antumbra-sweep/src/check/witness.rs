@@ -214,7 +214,13 @@ impl Sight<'_> {
                     top[k] = top[k].min(at);
                     bottom[k] = bottom[k].max(at);
                     let (top, bottom) = (Point::from(top), Point::from(bottom));
-                    stack.push((upper as usize, Aabb { min: bottom, ..bounds }));
+                    stack.push((
+                        upper as usize,
+                        Aabb {
+                            min: bottom,
+                            ..bounds
+                        },
+                    ));
                     stack.push((lower as usize, Aabb { max: top, ..bounds }));
                 }
                 Some(&KdNode::Leaf { first, count }) => {
@@ -237,9 +243,7 @@ impl Sight<'_> {
     /// A rounded point of the line: off by far less than half a grid step where it is on the grid.
     fn at(&self, position: &Position) -> [f64; 3] {
         let t = position.approximate();
-        std::array::from_fn(|k| {
-            (self.line.u[k] as f64 + t * self.line.d[k] as f64) / FINE_STEPS
-        })
+        std::array::from_fn(|k| (self.line.u[k] as f64 + t * self.line.d[k] as f64) / FINE_STEPS)
     }
 
     /// Whether an occluder meets the closed segment, apart from those in the target's plane and,
