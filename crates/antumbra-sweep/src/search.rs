@@ -247,8 +247,10 @@ impl Searcher {
         lines: &[([f64; 3], [f64; 3])],
     ) -> Result<(PolygonId, bool), Answer> {
         let question = frame.question;
-        let segments: Vec<Segment> =
-            lines.iter().filter_map(|(d, m)| between_gates(d, m, question)).collect();
+        let segments: Vec<Segment> = lines
+            .iter()
+            .filter_map(|(d, m)| between_gates(d, m, question))
+            .collect();
         // Known blockers first: the scene is asked only about lines that none of them blocks.
         let mut tally = Tally::default();
         let mut candidates: Vec<(PolygonId, usize)> =
@@ -264,18 +266,20 @@ impl Searcher {
             if any {
                 continue;
             }
-            question.caster.visit(s, (-1e-9, 1.0 + 1e-9), SAMPLING_SLACK, |items, _, _| {
-                for &id in items {
-                    if candidates.iter().all(|c| c.0 != id)
-                        && let Some(negative) = blocks(question, id, s)
-                    {
-                        any = true;
-                        tally.add(id, negative);
-                        candidates.push((id, i));
+            question
+                .caster
+                .visit(s, (-1e-9, 1.0 + 1e-9), SAMPLING_SLACK, |items, _, _| {
+                    for &id in items {
+                        if candidates.iter().all(|c| c.0 != id)
+                            && let Some(negative) = blocks(question, id, s)
+                        {
+                            any = true;
+                            tally.add(id, negative);
+                            candidates.push((id, i));
+                        }
                     }
-                }
-                std::ops::ControlFlow::Continue(())
-            });
+                    std::ops::ControlFlow::Continue(())
+                });
             if any {
                 continue;
             }

@@ -80,6 +80,12 @@ impl<'a> Baker<'a> {
         self.caster.scene()
     }
 
+    /// The scene prepared for single lines and points.
+    #[must_use]
+    pub fn caster(&self) -> &Caster<'a> {
+        &self.caster
+    }
+
     /// The potentially visible set of one cell. Deterministic; one thread.
     #[must_use]
     pub fn bake_cell(&self, cell: &ViewCell, options: &BakeOptions) -> CellResult {
