@@ -81,7 +81,7 @@ impl SceneBuilder {
         self
     }
 
-    /// Which parts block lines.
+    /// Which parts are occluders.
     #[must_use]
     pub fn policy(mut self, policy: OccluderPolicy) -> Self {
         self.policy = policy;

@@ -16,7 +16,7 @@ impl Shape<'_> {
     ///
     /// Besides the axes of the box, which the bounding boxes have decided, two convex bodies can
     /// only be separated by the plane of the polygon, or by a plane along an edge and a coordinate
-    /// axis: an edge line in one of the three projections. 51 bits for the edges, 78 for the plane.
+    /// axis: an edge in one of the three projections. 51 bits for the edges, 78 for the plane.
     pub(crate) fn meets(&self, bounds: &Aabb) -> bool {
         !self.plane_separates(bounds) && (0..3).all(|axis| !self.edge_separates(bounds, axis))
     }
