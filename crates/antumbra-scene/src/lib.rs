@@ -6,8 +6,10 @@ mod builder;
 mod cells;
 mod input;
 mod kd;
+mod meet;
 mod report;
 mod scene;
+mod target_tree;
 
 pub use builder::{BuildError, SceneBuilder};
 pub use cells::{
@@ -15,5 +17,7 @@ pub use cells::{
 };
 pub use input::{Faces, ObjectInput, OccluderPolicy, PartInput, SceneInput};
 pub use kd::{KdBox, KdHeuristic, KdNode, KdTree, SeenPolygons};
+pub use meet::{BoxContact, box_contact, polygons_touch};
 pub use report::{BuildReport, ObjectRepairs, RepairCounts};
 pub use scene::{Object, ObjectId, PolygonId, PolygonRef, Scene};
+pub use target_tree::{TargetKind, TargetNode, TargetTree};
