@@ -38,19 +38,33 @@ pub(super) fn start_rows(from: &Gate, to: &Gate) -> Vec<Vec<Hyperplane>> {
     vec![rows]
 }
 
-/// The rows of all edges of both gates.
-pub(super) fn edge_rows(from: &Gate, to: &Gate) -> Vec<Row> {
-    let edges = |gate: &Gate| {
+/// The rows of the edges of both gates, but for those wholly in the part that no lines use: they
+/// hold as well, but would only give the cone more facets.
+fn edge_rows(from: &Gate, to: &Gate) -> Vec<Row> {
+    let edges = |gate: &Gate, plane: &Plane, used: Sign| {
         let n = gate.corners.len();
-        let edge = |i: usize| edge_row(gate.corners[i], gate.corners[(i + 1) % n]);
-        (0..n).map(edge).collect::<Vec<_>>()
+        let edge = |i: usize| (gate.corners[i], gate.corners[(i + 1) % n]);
+        let unused = |(u, v): (Point, Point)| {
+            let (s, t) = (plane.side(u).times(used), plane.side(v).times(used));
+            !s.is_positive() && !t.is_positive() && (s.is_negative() || t.is_negative())
+        };
+        (0..n)
+            .map(edge)
+            .filter(|&e| !unused(e))
+            .map(|(u, v)| edge_row(u, v))
+            .collect::<Vec<_>>()
     };
-    [edges(from), edges(to)].concat()
+    [
+        edges(from, &to.plane, Sign::Negative),
+        edges(to, &from.plane, Sign::Positive),
+    ]
+    .concat()
 }
 
-/// The row of a line between corners off the plane of the other gate: not zero on the planes'
-/// common line. `None` if no lines leave the first gate and cross the second.
+/// The row of the line between the corners farthest from the plane of the other gate: not zero on
+/// the planes' common line. `None` if no lines leave the first gate and cross the second.
 fn transverse(from: &Gate, to: &Gate) -> Option<Row> {
+<<<<<<< HEAD
     let a = from
         .corners
         .iter()
@@ -60,6 +74,12 @@ fn transverse(from: &Gate, to: &Gate) -> Option<Row> {
         .iter()
         .find(|&&p| from.plane.side(p).is_positive())?;
     Some(edge_row(*a, *b))
+=======
+    let a = from.corners.iter().min_by_key(|&&p| to.plane.evaluate(p))?;
+    let b = to.corners.iter().max_by_key(|&&p| from.plane.evaluate(p))?;
+    let off = to.plane.side(*a).is_negative() && from.plane.side(*b).is_positive();
+    off.then(|| edge_row(*a, *b))
+>>>>>>> checker
 }
 
 fn caps(from: &Gate, to: &Gate, t: &Row, edges: &[Row]) -> Vec<Hyperplane> {

@@ -63,6 +63,7 @@ fn random_scene(seed: u64, count: usize, size: f64, levels: f64) -> antumbra_sce
 
 #[test]
 fn random_bakes_hold() {
+<<<<<<< HEAD
     for (seed, count, size, levels) in [
         (1, 60, 80.0, 1000.0),
         (2, 200, 60.0, 1000.0),
@@ -71,6 +72,9 @@ fn random_bakes_hold() {
         (5, 400, 50., 1000.),
         (6, 1500, 40., 1000.),
     ] {
+=======
+    for (seed, count, size, levels) in [(6, 1500, 40., 1000.)] {
+>>>>>>> checker
         let scene = random_scene(seed, count, size, levels);
         let baker = Baker::new(&scene);
         for c in 0..4 {
@@ -84,9 +88,11 @@ fn random_bakes_hold() {
             let t = std::time::Instant::now();
             let r = baker.bake_cell(&cell, &BakeOptions::default());
             let bake = t.elapsed();
+            for _ in 0..10 { std::hint::black_box(check_cell(&scene, &cell, &r.visible, &r.unknown, r.accuracy, &r.proof)); }
             let t = std::time::Instant::now();
             let report = check_cell(&scene, &cell, &r.visible, &r.unknown, r.accuracy, &r.proof);
             let check = t.elapsed();
+<<<<<<< HEAD
             eprintln!(
                 "{seed} {c}: visible {} touching {} hidden {} unknown {} failed {} bytes {} bake {bake:?} check {check:?} {:?}",
                 report.visible_checked,
@@ -100,6 +106,11 @@ fn random_bakes_hold() {
             for f in report.failed.iter().take(4) {
                 eprintln!("   {f}");
             }
+=======
+            eprintln!("{seed} {c}: visible {} touching {} hidden {} unknown {} failed {} bytes {} bake {bake:?} check {check:?} {:?}", report.visible_checked, r.visible.iter().filter(|v| v.touching).count(), report.hidden_checked, r.unknown.len(), report.failed.len(), r.proof.len(), r.work);
+            eprintln!("tightest, widened, big starts, wide cuts, cuts, starts {:?}", piece::COUNTS.iter().map(|c| c.swap(0, std::sync::atomic::Ordering::Relaxed)).collect::<Vec<_>>());
+            for f in report.failed.iter().take(4) { eprintln!("   {f}"); }
+>>>>>>> checker
         }
     }
 }
