@@ -116,11 +116,11 @@ fn gates(
     target: &Target,
     proofs: &[GateProof],
 ) -> Result<(), String> {
-    if let Target::Box(bounds) = target {
-        if meets(scene, source, bounds) {
-            // Lines could start inside the box without crossing a face.
-            return Err("the target box meets the cell".into());
-        }
+    if let Target::Box(bounds) = target
+        && meets(scene, source, bounds)
+    {
+        // Lines could start inside the box without crossing a face.
+        return Err("the target box meets the cell".into());
     }
     let targets = target_openings(scene, target);
     let mut open = open_pairs(&source.openings, &targets);

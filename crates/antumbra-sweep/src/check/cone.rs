@@ -159,7 +159,7 @@ impl<N: Numbers> Cone<N> {
     }
 
     /// Whether two rays span an edge.
-    fn adjacent(&self, i: usize, j: usize) -> bool {
+    pub(super) fn adjacent(&self, i: usize, j: usize) -> bool {
         let (a, b) = (self.rays[i].tight, self.rays[j].tight);
         let common = a & b;
         let count = common.count_ones();
@@ -244,4 +244,113 @@ pub(super) fn bits(mut set: u128) -> impl Iterator<Item = usize> {
             k
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::big::{Big, Wide};
+    use super::super::fast::{Fast, FastRow};
+    use super::{Cone, Cut, Numbers, Trouble, bits};
+    use antumbra_kernel::Sign;
+
+    struct Random(u64);
+
+    impl Random {
+        fn row(&mut self, range: i64) -> [i64; 6] {
+            std::array::from_fn(|_| {
+                self.0 ^= self.0 << 13;
+                self.0 ^= self.0 >> 7;
+                self.0 ^= self.0 << 17;
+                (self.0 >> 20) as i64 % (2 * range + 1) - range
+            })
+        }
+    }
+
+    /// Every ray is non-negative on all rows, zero exactly on its tight ones, and those have rank
+    /// five; no ray occurs twice.
+    fn sanity<N: Numbers>(cone: &Cone<N>) {
+        for ray in &cone.rays {
+            let mut basis = super::Basis::default();
+            for (k, row) in cone.rows.iter().enumerate() {
+                let sign = N::sign(row, &ray.vertex);
+                assert!(!sign.is_negative());
+                assert_eq!(sign.is_zero(), ray.tight >> k & 1 == 1);
+            }
+            for k in bits(ray.tight) {
+                basis.insert(N::residues(&cone.rows[k]));
+            }
+            assert_eq!(basis.rank(), 5);
+        }
+        for (i, ray) in cone.rays.iter().enumerate() {
+            assert!(cone.rays[..i].iter().all(|other| other.tight != ray.tight));
+        }
+    }
+
+    #[test]
+    fn cuts_keep_both_descriptions_in_step() {
+        let mut random = Random(77);
+        let mut both = 0;
+        for round in 0..60 {
+            // Few values make degenerate cones.
+            let range = [1, 2, 1 << 20][round % 3];
+            let rows: Vec<FastRow> = (0..9)
+                .map(|_| {
+                    let mut row = random.row(range);
+                    // All hold strictly at one point.
+                    row[0] = 1 + row[1..].iter().map(|c| c.abs()).sum::<i64>() / 2;
+                    FastRow::new(row)
+                })
+                .collect();
+            let Ok(Some(mut cone)) = Cone::<Fast>::of(&rows) else {
+                continue;
+            };
+            sanity(&cone);
+            let wide: Vec<Wide> = rows.iter().map(|r| Wide::new(Fast::wide(r))).collect();
+            let big = Cone::<Big>::of(&wide).expect("pointed").expect("interior");
+            assert_eq!(
+                (big.rays.len(), big.rows.len()),
+                (cone.rays.len(), cone.rows.len())
+            );
+            sanity(&big);
+            for _ in 0..6 {
+                let row = FastRow::new(random.row(range));
+                match cone.cut(&row) {
+                    Ok(Cut::Both(inside, outside)) => {
+                        sanity(&inside);
+                        sanity(&outside);
+                        assert!(inside.within(&row) && !outside.within(&row));
+                        let on = |c: &Cone<Fast>| {
+                            let zero = |v| Fast::sign(&row, v) == Sign::Zero;
+                            c.rays.iter().filter(|r| zero(&r.vertex)).count()
+                        };
+                        assert_eq!(on(&inside), on(&outside));
+                        both += 1;
+                        cone = if both % 2 == 0 { inside } else { outside };
+                    }
+                    Ok(Cut::Inside) => assert!(cone.within(&row)),
+                    Ok(Cut::Outside) => assert!(cone.within(&Fast::complement(&row))),
+                    Err(trouble) => panic!("{trouble:?}"),
+                }
+            }
+        }
+        assert!(both > 100, "{both}");
+    }
+
+    #[test]
+    fn rows_of_lower_rank_and_wide_rows_are_refused() {
+        let mut random = Random(5);
+        let rows: Vec<FastRow> = (0..5).map(|_| FastRow::new(random.row(9))).collect();
+        assert_eq!(Cone::<Fast>::of(&rows).err(), Some(Trouble::NotPointed));
+        let unit = |k| {
+            let mut row = [0; 6];
+            row[k] = 1;
+            FastRow::new(row)
+        };
+        let rows: Vec<FastRow> = (0..6).map(unit).collect();
+        let cone = Cone::<Fast>::of(&rows).expect("pointed").expect("interior");
+        let row = FastRow::new([1, -1, 0, 0, 0, 1 << 40]);
+        assert_eq!(cone.cut(&row).err(), Some(Trouble::TooWide));
+        let never: Vec<FastRow> = (0..6).map(unit).chain([FastRow::new([-1; 6])]).collect();
+        assert!(Cone::<Fast>::of(&never).expect("pointed").is_none());
+    }
 }

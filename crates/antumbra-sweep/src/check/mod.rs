@@ -15,8 +15,6 @@ mod piece;
 mod real;
 mod rows;
 mod start;
-#[cfg(test)]
-mod tests;
 mod tree;
 mod witness;
 

@@ -145,7 +145,8 @@ impl Piece {
     }
 }
 
-fn widened(cone: &Cone<Fast>) -> Cone<Big> {
+/// The same cone in big integers.
+pub(super) fn widened(cone: &Cone<Fast>) -> Cone<Big> {
     Cone {
         rows: cone.rows.iter().map(|r| Wide::new(Fast::wide(r))).collect(),
         rays: cone

@@ -158,3 +158,105 @@ fn cross(a: &[IBig; 3], b: &[IBig; 3]) -> [IBig; 3] {
     let term = |i: usize, j: usize| &a[i] * &b[j] - &a[j] * &b[i];
     [term(1, 2), term(2, 0), term(0, 1)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::cone::Cut;
+    use super::super::ends::Gate;
+    use super::super::fast::{Fast, FastRow};
+    use super::super::piece::Piece;
+    use super::*;
+    use antumbra_kernel::plucker::edge_row;
+    use antumbra_kernel::{Plane, Point};
+
+    fn square(half: i32, z: i32) -> Gate {
+        let p = |x, y| Point::new(x, y, z);
+        let corners = vec![
+            p(-half, -half),
+            p(half, -half),
+            p(half, half),
+            p(-half, half),
+        ];
+        let plane = Plane::through(corners[0], corners[1], corners[2]);
+        Gate { corners, plane }
+    }
+
+    fn start(from: &Gate, to: &Gate) -> Cone<Fast> {
+        let pieces = Piece::all_between(from, to).expect("small rows");
+        match &pieces[..] {
+            [Piece::Fast(cone)] => (**cone).clone(),
+            other => panic!("{} pieces", other.len()),
+        }
+    }
+
+    #[test]
+    fn two_squares_see_each_other() {
+        let cone = start(&square(4000, -1000), &square(4000, 1000));
+        assert_eq!(cone.rows.len(), 10);
+        assert!(holds_real_lines(&cone));
+    }
+
+    /// The cells between two squares and lines through (a, -1000) and (J a, +1000), J the quarter
+    /// turn.
+    fn cells() -> Vec<Cone<Fast>> {
+        let mut cells = vec![start(&square(4000, -1000), &square(4000, 1000))];
+        for (x, y) in [(30, 20), (500, 0), (-300, 400), (-200, -450)] {
+            let row = edge_row(Point::new(x, y, -1000), Point::new(-y, x, 1000));
+            let cut = |cell: Cone<Fast>| match cell.cut(&FastRow::new(row)).expect("small") {
+                Cut::Both(inside, outside) => vec![inside, outside],
+                _ => vec![cell],
+            };
+            cells = cells.into_iter().flat_map(cut).collect();
+        }
+        cells
+    }
+
+    /// The cell of 54 vertices, all with Q > 0, where no edge shows that real lines fill it.
+    #[test]
+    fn a_conic_inside_a_face_is_found() {
+        let mut cells = cells();
+        cells.retain(|cell| {
+            let positive = |v| Fast::form_sign(&Fast::quadric(v)).is_positive();
+            cell.rays.iter().all(|r| positive(&r.vertex))
+        });
+        let [cell] = &cells[..] else {
+            panic!("{} cells", cells.len());
+        };
+        assert_eq!(cell.rays.len(), 54);
+        assert!(holds_real_lines(cell));
+        let mut conics = 0;
+        for (i, p) in cell.rays.iter().enumerate() {
+            for (j, q) in cell.rays.iter().enumerate().take(i) {
+                let b = Fast::bilinear(&p.vertex, &q.vertex);
+                let (v, w) = (Fast::quadric(&p.vertex), Fast::quadric(&q.vertex));
+                let shows = b.is_negative() && Fast::crosses(&b, &v, &w);
+                assert!(!shows || !cell.adjacent(i, j));
+                conics += u32::from(in_a_face(cell, i, j));
+            }
+        }
+        assert!(conics > 0);
+    }
+
+    #[test]
+    fn big_numbers_agree() {
+        for cell in cells() {
+            let wide = super::super::piece::widened(&cell);
+            assert_eq!(holds_real_lines(&cell), holds_real_lines(&wide));
+        }
+    }
+
+    #[test]
+    fn transversals_meet_all_three_lines() {
+        let row = |a: [i32; 3], b: [i32; 3]| edge_row(a.into(), b.into()).map(IBig::from);
+        let e = row([1, 2, 3], [4, 4, 9]);
+        let (f, g) = (row([0, 5, 1], [-3, 2, 2]), row([7, 7, 0], [1, 0, -8]));
+        for step in -3..4 {
+            let t = transversal(&point_on(&e, step), &f, &g);
+            assert!(t.iter().any(|c| *c != IBig::ZERO));
+            assert_eq!(form(&t, &t), IBig::ZERO);
+            for line in [&e, &f, &g] {
+                assert_eq!(dot(line, &t), IBig::ZERO);
+            }
+        }
+    }
+}

@@ -95,13 +95,11 @@ fn gcd(mut a: u128, mut b: u128) -> u128 {
 
 /// The sign of a wide row at a fixed-width vertex, exact.
 pub(super) fn sign_at(row: &Wide, vertex: &FastVertex) -> Sign {
-    let approx = row.approx();
     let mut sum = 0.0;
     let mut slack = 0.0;
-    for k in 0..6 {
-        let t = approx[k] * vertex.approx[k];
-        sum += t;
-        slack += t.abs() * FILTER + 4.0 * vertex.approx[k].abs();
+    for (a, b) in row.approx().iter().zip(&vertex.approx) {
+        sum += a * b;
+        slack += (a * b).abs() * FILTER + 4.0 * b.abs();
     }
     if sum > slack {
         Sign::Positive

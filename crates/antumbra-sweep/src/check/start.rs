@@ -64,22 +64,10 @@ fn edge_rows(from: &Gate, to: &Gate) -> Vec<Row> {
 /// The row of the line between the corners farthest from the plane of the other gate: not zero on
 /// the planes' common line. `None` if no lines leave the first gate and cross the second.
 fn transverse(from: &Gate, to: &Gate) -> Option<Row> {
-<<<<<<< HEAD
-    let a = from
-        .corners
-        .iter()
-        .find(|&&p| to.plane.side(p).is_negative())?;
-    let b = to
-        .corners
-        .iter()
-        .find(|&&p| from.plane.side(p).is_positive())?;
-    Some(edge_row(*a, *b))
-=======
     let a = from.corners.iter().min_by_key(|&&p| to.plane.evaluate(p))?;
     let b = to.corners.iter().max_by_key(|&&p| from.plane.evaluate(p))?;
     let off = to.plane.side(*a).is_negative() && from.plane.side(*b).is_positive();
     off.then(|| edge_row(*a, *b))
->>>>>>> checker
 }
 
 fn caps(from: &Gate, to: &Gate, t: &Row, edges: &[Row]) -> Vec<Hyperplane> {

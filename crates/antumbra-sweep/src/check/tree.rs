@@ -261,7 +261,7 @@ fn sides(polygon: &PolygonRef<'_>, plane: &Plane) -> Vec<Sign> {
 
 /// Whether an edge has both ends on the unwanted side or in the plane, but not both in it.
 fn wholly_behind(a: Sign, b: Sign) -> bool {
-    !a.is_positive() && !b.is_positive() && !(a.is_zero() && b.is_zero())
+    !a.is_positive() && !b.is_positive() && (a.is_negative() || b.is_negative())
 }
 
 fn on_both_sides(sides: &[Sign]) -> bool {
