@@ -59,8 +59,11 @@ impl Shape<'_> {
 #[cfg(test)]
 mod tests {
     use antumbra_kernel::{Aabb, Plane, Point};
+    use proptest::prelude::*;
 
     use super::Shape;
+    use crate::meet::{BoxContact, box_contact};
+    use crate::{ObjectId, PolygonId, PolygonRef};
 
     fn meets(corners: [[i32; 3]; 3], min: [i32; 3], max: [i32; 3]) -> bool {
         let corners = corners.map(Point::from);
@@ -86,34 +89,26 @@ mod tests {
         assert!(meets(flat, [4, 4, 5], [9, 9, 5]));
     }
 
-    #[test]
-    fn the_test_agrees_with_a_search_for_a_common_point() {
-        // Integer boxes against a triangle whose corners, edge points and center are sampled at
-        // sixtieths: a common sample implies meeting.
-        let triangle = [[0, 1, 7], [9, 2, 0], [3, 8, 4]];
-        let samples: Vec<[f64; 3]> = (0..=30)
-            .flat_map(|i| (0..=30 - i).map(move |j| (i, j)))
-            .map(|(i, j)| {
-                let (s, t) = (f64::from(i) / 30.0, f64::from(j) / 30.0);
-                std::array::from_fn(|k| {
-                    let [a, b, c] = [triangle[0][k], triangle[1][k], triangle[2][k]].map(f64::from);
-                    a + s * (b - a) + t * (c - a)
-                })
-            })
-            .collect();
-        let (mut met, mut missed) = (0, 0);
-        for at in 0..8 * 8 * 8 {
-            let min = [at % 8, at / 8 % 8, at / 64];
-            let max = min.map(|c| c + 1);
-            let hit = samples
-                .iter()
-                .any(|p| (0..3).all(|k| f64::from(min[k]) <= p[k] && p[k] <= f64::from(max[k])));
-            let answer = meets(triangle, min, max);
-            assert!(answer || !hit, "{min:?}");
-            met += usize::from(answer);
-            missed += usize::from(answer && !hit);
+    proptest! {
+        #[test]
+        fn two_separating_axis_tests_agree(
+            corners in prop::array::uniform3(prop::array::uniform3(-6..7_i32)),
+            a in prop::array::uniform3(-6..7_i32),
+            b in prop::array::uniform3(-6..7_i32),
+        ) {
+            let corners = corners.map(Point::from);
+            let plane = Plane::through(corners[0], corners[1], corners[2]);
+            let bounds = Aabb::new(Point::from(a), Point::from(a)).with(Point::from(b));
+            let polygon = PolygonRef {
+                id: PolygonId(0),
+                object: ObjectId(0),
+                corners: &corners,
+                plane: &plane,
+                occludes: true,
+            };
+            prop_assume!(!plane.is_degenerate() && polygon.bounds().touches(&bounds));
+            let apart = box_contact(&polygon, &bounds) == BoxContact::Apart;
+            prop_assert_eq!(Shape { corners: &corners, plane: &plane }.meets(&bounds), !apart);
         }
-        // The samples are dense: a few boxes are only grazed.
-        assert!(met > 40 && missed * 8 < met, "{met} {missed}");
     }
 }
