@@ -93,6 +93,8 @@ pub(crate) struct Searcher {
 
 /// How many recent blockers are tried before the scene is asked.
 const RECENT: usize = 12;
+/// Draws of lines from a cone before it is given up as too thin for doubles.
+const PATIENCE: usize = 50;
 /// Lines sampled in a cone.
 const SAMPLES: usize = 12;
 
@@ -218,24 +220,30 @@ impl Searcher {
             slots[slot] = Slot::Done(Node::Imaginary);
             return Ok(());
         }
-        let mut sampler = Sampler::new(&self.space, &cone);
+        let sampler = Sampler::new(&self.space, &cone);
         if let Some(angle) = frame.question.ignore_below
             && size_below(&self.space, &cone, &sampler, frame.question.from, angle)
         {
             slots[slot] = Slot::Done(Node::Ignored);
             return Ok(());
         }
+        // Nearly always the first draw decides. In thin cones lines may lose their place when they
+        // are rounded to fine points; others keep it.
         let mut lines = Vec::with_capacity(SAMPLES);
-        sampler.lines(rng, SAMPLES, &mut lines);
-        if lines.len() < SAMPLES / 2 {
-            sampler.persist(rng, SAMPLES / 2, &mut lines);
+        for _ in 0..PATIENCE {
+            lines.clear();
+            sampler.lines(rng, SAMPLES, &mut lines);
+            if lines.len() < SAMPLES / 2 {
+                sampler.persist(rng, SAMPLES / 2, &mut lines);
+            }
+            self.work.samples += lines.len() as u64;
+            match self.choose(frame, &cone, &lines) {
+                Ok(blocker) => return self.subtract(frame, cone, slot, slots, stack, blocker),
+                Err(Answer::Undecided(Undecided::Thin)) => {}
+                Err(answer) => return Err(answer),
+            }
         }
-        if lines.is_empty() {
-            return Err(Answer::Undecided(Undecided::Thin));
-        }
-        self.work.samples += lines.len() as u64;
-        let blocker = self.choose(frame, &cone, &lines)?;
-        self.subtract(frame, cone, slot, slots, stack, blocker)
+        Err(Answer::Undecided(Undecided::Thin))
     }
 
     /// The occluder that blocks most sampled lines, with the direction in which it is crossed; or
