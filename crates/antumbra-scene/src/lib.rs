@@ -2,10 +2,22 @@
 //!
 //! This crate never sees a line: what can be seen is decided where it meets line space.
 
+mod builder;
+mod cells;
 mod input;
 mod kd;
+mod meet;
+mod report;
 mod scene;
+mod target_tree;
 
+pub use builder::{BuildError, SceneBuilder};
+pub use cells::{
+    CellError, CellKind, CellSpec, CellSpecError, MAX_CELLS, NamedBox, ViewCell, make_cells,
+};
 pub use input::{Faces, ObjectInput, OccluderPolicy, PartInput, SceneInput};
-pub use kd::{KdNode, KdTree};
+pub use kd::{KdBox, KdHeuristic, KdNode, KdTree, SeenPolygons};
+pub use meet::{BoxContact, box_contact, polygons_touch};
+pub use report::{BuildReport, ObjectRepairs, RepairCounts};
 pub use scene::{Object, ObjectId, PolygonId, PolygonRef, Scene};
+pub use target_tree::{TargetKind, TargetNode, TargetTree};
