@@ -48,6 +48,7 @@ fn header() -> PvsHeader {
 fn record(cell: u32) -> CellRecord {
     let witness = |object: u32| WitnessRecord {
         polygon: object,
+        source: cell % 3,
         from: [i64::from(cell) << 22, 5, -7],
         through: [(i64::from(cell) << 22) + 65536, 5 + i64::from(object), -7],
     };
