@@ -5,6 +5,7 @@
 mod input;
 mod kd;
 mod scene;
+pub mod synth;
 
 pub use input::{Faces, ObjectInput, OccluderPolicy, PartInput, SceneInput};
 pub use kd::{KdNode, KdTree};
