@@ -46,7 +46,10 @@ impl std::fmt::Display for SnapError {
             Self::NotFinite { point: [x, y, z] } => {
                 write!(f, "the point ({x}, {y}, {z}) is not finite")
             }
-            Self::OutOfRange { point: [x, y, z], reach } => write!(
+            Self::OutOfRange {
+                point: [x, y, z],
+                reach,
+            } => write!(
                 f,
                 "the point ({x}, {y}, {z}) is farther than {reach} from the grid's origin: choose a coarser grid"
             ),
@@ -71,7 +74,9 @@ impl Grid {
     /// A point box gets step 1. Returns `None` if the box is not finite.
     #[must_use]
     pub fn fitting(min: [f64; 3], max: [f64; 3]) -> Option<Self> {
-        let half = (0..3).map(|k| (max[k] / 2.0 - min[k] / 2.0).abs()).fold(0.0, f64::max);
+        let half = (0..3)
+            .map(|k| (max[k] / 2.0 - min[k] / 2.0).abs())
+            .fold(0.0, f64::max);
         // One step is kept free on each side, so that outward rounding stays on the grid.
         let room = f64::from(LIMIT - 4);
         let mut step = 1.0_f64;
@@ -173,8 +178,14 @@ mod tests {
     #[test]
     fn bad_points_are_refused() {
         let grid = Grid::new([0.0; 3], 1.0).expect("finite");
-        assert!(matches!(grid.snap([f64::NAN, 0.0, 0.0]), Err(SnapError::NotFinite { .. })));
-        assert!(matches!(grid.snap([1e9, 0.0, 0.0]), Err(SnapError::OutOfRange { .. })));
+        assert!(matches!(
+            grid.snap([f64::NAN, 0.0, 0.0]),
+            Err(SnapError::NotFinite { .. })
+        ));
+        assert!(matches!(
+            grid.snap([1e9, 0.0, 0.0]),
+            Err(SnapError::OutOfRange { .. })
+        ));
         assert!(Grid::new([0.0; 3], 0.0).is_none());
         assert!(Grid::fitting([0.0; 3], [f64::INFINITY; 3]).is_none());
     }

@@ -5,9 +5,12 @@
 //! the predicates, each with its proved error bound written beside it.
 
 mod grid;
+pub mod plucker;
 mod point;
 mod sign;
+mod wide;
 
 pub use grid::{Grid, Rounding, SnapError};
 pub use point::{Aabb, LIMIT, Plane, Point, cross, sub};
 pub use sign::Sign;
+pub use wide::{I256, I512, Int};

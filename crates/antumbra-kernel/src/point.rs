@@ -104,15 +104,29 @@ impl Aabb {
     pub fn around(points: impl IntoIterator<Item = Point>) -> Option<Self> {
         let mut points = points.into_iter();
         let first = points.next()?;
-        Some(points.fold(Self { min: first, max: first }, |b, p| b.with(p)))
+        Some(points.fold(
+            Self {
+                min: first,
+                max: first,
+            },
+            |b, p| b.with(p),
+        ))
     }
 
     /// The smallest box that also contains `p`.
     #[must_use]
     pub fn with(self, p: Point) -> Self {
         Self {
-            min: Point::new(self.min.x.min(p.x), self.min.y.min(p.y), self.min.z.min(p.z)),
-            max: Point::new(self.max.x.max(p.x), self.max.y.max(p.y), self.max.z.max(p.z)),
+            min: Point::new(
+                self.min.x.min(p.x),
+                self.min.y.min(p.y),
+                self.min.z.min(p.z),
+            ),
+            max: Point::new(
+                self.max.x.max(p.x),
+                self.max.y.max(p.y),
+                self.max.z.max(p.z),
+            ),
         }
     }
 
@@ -190,7 +204,10 @@ impl Plane {
     #[must_use]
     pub fn through(a: Point, b: Point, c: Point) -> Self {
         let normal = cross(sub(b, a), sub(c, a));
-        Self { normal, offset: dot_point(normal, a) }
+        Self {
+            normal,
+            offset: dot_point(normal, a),
+        }
     }
 
     /// On which side of the plane a grid point lies: positive is where the normal points.
@@ -217,7 +234,10 @@ impl Plane {
     /// The same plane seen from its other side.
     #[must_use]
     pub fn flipped(&self) -> Self {
-        Self { normal: self.normal.map(|c| -c), offset: -self.offset }
+        Self {
+            normal: self.normal.map(|c| -c),
+            offset: -self.offset,
+        }
     }
 }
 
@@ -237,11 +257,21 @@ mod tests {
     #[test]
     fn plane_side_is_exact_at_the_ends_of_the_grid() {
         let m = LIMIT - 1;
-        let plane = Plane::through(Point::new(-m, -m, m), Point::new(m, -m, -m), Point::new(-m, m, -m));
+        let plane = Plane::through(
+            Point::new(-m, -m, m),
+            Point::new(m, -m, -m),
+            Point::new(-m, m, -m),
+        );
         assert_eq!(plane.side(Point::new(-m, -m, m)), Sign::Zero);
-        assert_eq!(plane.side(Point::new(-m, -m, m - 1)), plane.side(Point::new(-m, -m, -m)));
+        assert_eq!(
+            plane.side(Point::new(-m, -m, m - 1)),
+            plane.side(Point::new(-m, -m, -m))
+        );
         assert_ne!(plane.side(Point::new(-m, -m, m - 1)), Sign::Zero);
-        assert_eq!(plane.flipped().side(Point::new(0, 0, 0)), plane.side(Point::new(0, 0, 0)).flip());
+        assert_eq!(
+            plane.flipped().side(Point::new(0, 0, 0)),
+            plane.side(Point::new(0, 0, 0)).flip()
+        );
     }
 
     #[test]

@@ -34,6 +34,17 @@ impl Sign {
         }
     }
 
+    /// The sign of a number from its comparison with zero.
+    #[inline]
+    #[must_use]
+    pub fn of_ordering(ordering: std::cmp::Ordering) -> Self {
+        match ordering {
+            std::cmp::Ordering::Less => Self::Negative,
+            std::cmp::Ordering::Equal => Self::Zero,
+            std::cmp::Ordering::Greater => Self::Positive,
+        }
+    }
+
     /// The opposite sign.
     #[inline]
     #[must_use]

@@ -1,0 +1,481 @@
+//! A convex cone of lines in Plücker space, and its split by a hyperplane.
+//!
+//! The blocker polyhedron of [Bittner02, 8.7] as a pointed, full-dimensional cone in R^6, by the
+//! double description method: half-spaces and extreme rays with their incidences. Splitting
+//! follows the combinatorial adjacency test; new rays are computed directly from five defining
+//! rows, never from other rays, so that their size stays bounded.
+
+use antumbra_kernel::Sign;
+use dashu_int::IBig;
+
+use crate::space::{ExactVertex, PluckerSpace, RowId, VertexId, sign_of};
+
+/// One side of a hyperplane: `sign * row . x >= 0`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Halfspace {
+    /// The hyperplane.
+    pub row: RowId,
+    /// Whether the side where the row is negative is meant.
+    pub negative: bool,
+}
+
+impl Halfspace {
+    /// The other side of the same hyperplane.
+    #[must_use]
+    pub fn opposite(self) -> Self {
+        Self {
+            row: self.row,
+            negative: !self.negative,
+        }
+    }
+
+    fn orient(self, sign: Sign) -> Sign {
+        if self.negative { sign.flip() } else { sign }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Ray {
+    vertex: VertexId,
+    /// Bit k: the ray lies on the hyperplane in slot k.
+    tight: u128,
+}
+
+/// A pointed, full-dimensional convex cone in R^6.
+#[derive(Clone, Debug)]
+pub struct Cone {
+    slots: Vec<Halfspace>,
+    live: u128,
+    rays: Vec<Ray>,
+}
+
+/// What a hyperplane does to a cone.
+#[derive(Clone, Debug)]
+pub enum Split {
+    /// No interior point is outside the half-space.
+    Inside,
+    /// No interior point is inside.
+    Outside,
+    /// Both parts, inside first.
+    Both(Cone, Cone),
+}
+
+/// Why a cone could not be built or split.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ConeError {
+    /// The half-spaces' intersection has no interior.
+    Flat,
+    /// The half-spaces contain a whole line through the origin of R^6.
+    NotPointed,
+    /// More than 128 facets at a time.
+    TooManyFacets,
+}
+
+impl std::fmt::Display for ConeError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Flat => "the cone of lines has no interior",
+            Self::NotPointed => "the cone of lines is not pointed",
+            Self::TooManyFacets => "the cone of lines has more than 128 facets",
+        })
+    }
+}
+
+impl std::error::Error for ConeError {}
+
+impl Cone {
+    /// The cone of all points on the given sides of some hyperplanes.
+    ///
+    /// # Errors
+    /// If the cone is flat or contains a line, or has too many facets.
+    pub fn new(space: &mut PluckerSpace, halfspaces: &[Halfspace]) -> Result<Self, ConeError> {
+        let rows: Vec<RowId> = halfspaces.iter().map(|h| h.row).collect();
+        let basis = space.independent(&rows, 6);
+        if basis.len() < 6 {
+            return Err(ConeError::NotPointed);
+        }
+        let mut used = vec![false; halfspaces.len()];
+        let mut slots = Vec::with_capacity(halfspaces.len() + 8);
+        for &row in &basis {
+            let i = halfspaces
+                .iter()
+                .position(|h| h.row == row)
+                .ok_or(ConeError::NotPointed)?;
+            used[i] = true;
+            slots.push(halfspaces[i]);
+        }
+        let mut rays = Vec::with_capacity(32);
+        for i in 0..6 {
+            let mut others = [basis[0]; 5];
+            let mut n = 0;
+            for (k, &row) in basis.iter().enumerate() {
+                if k != i {
+                    others[n] = row;
+                    n += 1;
+                }
+            }
+            let exact = space.meet(others).ok_or(ConeError::NotPointed)?;
+            let vertex = space.push_vertex(exact);
+            if slots[i].orient(space.sign(basis[i], vertex)).is_negative() {
+                space.negate_vertex(vertex);
+            }
+            rays.push(Ray {
+                vertex,
+                tight: 0b11_1111 & !(1 << i),
+            });
+        }
+        let mut cone = Self {
+            slots,
+            live: 0b11_1111,
+            rays,
+        };
+        for (i, &h) in halfspaces.iter().enumerate() {
+            if !used[i] {
+                cone.cut(space, h)?;
+            }
+        }
+        Ok(cone)
+    }
+
+    /// The half-spaces that may bound the cone (facets and a few redundant ones).
+    pub fn halfspaces(&self) -> impl Iterator<Item = Halfspace> + '_ {
+        self.slots
+            .iter()
+            .enumerate()
+            .filter(|(k, _)| self.live >> k & 1 == 1)
+            .map(|(_, h)| *h)
+    }
+
+    /// The extreme rays.
+    pub fn vertices(&self) -> impl Iterator<Item = VertexId> + Clone + '_ {
+        self.rays.iter().map(|r| r.vertex)
+    }
+
+    /// How many extreme rays there are.
+    #[must_use]
+    pub fn ray_count(&self) -> usize {
+        self.rays.len()
+    }
+
+    /// Sets of three half-spaces that are tight on a common 2-face of the polytope (a 3-face of
+    /// the cone), each with the other live half-spaces.
+    pub(crate) fn faces_on_three(&self) -> Vec<([Halfspace; 3], Vec<Halfspace>)> {
+        let live: Vec<usize> = (0..self.slots.len())
+            .filter(|k| self.live >> k & 1 == 1)
+            .collect();
+        let mut out = Vec::new();
+        for (x, &i) in live.iter().enumerate() {
+            for (y, &j) in live.iter().enumerate().skip(x + 1) {
+                for &k in &live[y + 1..] {
+                    let set = 1_u128 << i | 1_u128 << j | 1_u128 << k;
+                    let on: Vec<&Ray> = self.rays.iter().filter(|r| r.tight & set == set).collect();
+                    if on.len() < 3 {
+                        continue;
+                    }
+                    let common = on.iter().fold(u128::MAX, |c, r| c & r.tight) & self.live;
+                    let others = live
+                        .iter()
+                        .filter(|&&l| common >> l & 1 == 0)
+                        .map(|&l| self.slots[l])
+                        .collect();
+                    out.push(([self.slots[i], self.slots[j], self.slots[k]], others));
+                }
+            }
+        }
+        out
+    }
+
+    /// The signs of all rays with respect to a half-space, and whether any is strictly inside or
+    /// strictly outside.
+    fn classify(
+        &self,
+        space: &mut PluckerSpace,
+        h: Halfspace,
+        signs: &mut Vec<Sign>,
+    ) -> (bool, bool) {
+        signs.clear();
+        let (mut inside, mut outside) = (false, false);
+        let slot = self.slot_of(h.row);
+        for ray in &self.rays {
+            let s = match slot {
+                Some(k) if ray.tight >> k & 1 == 1 => Sign::Zero,
+                _ => h.orient(space.sign(h.row, ray.vertex)),
+            };
+            inside |= s.is_positive();
+            outside |= s.is_negative();
+            signs.push(s);
+        }
+        (inside, outside)
+    }
+
+    fn slot_of(&self, row: RowId) -> Option<usize> {
+        (0..self.slots.len()).find(|&k| self.live >> k & 1 == 1 && self.slots[k].row == row)
+    }
+
+    /// Where the cone's interior lies: only inside, only outside, or on both sides (`None`).
+    #[must_use]
+    pub fn position(&self, space: &mut PluckerSpace, h: Halfspace) -> Option<Sign> {
+        let (mut inside, mut outside) = (false, false);
+        for ray in &self.rays {
+            match h.orient(space.sign(h.row, ray.vertex)) {
+                Sign::Positive => inside = true,
+                Sign::Negative => outside = true,
+                Sign::Zero => {}
+            }
+            if inside && outside {
+                return None;
+            }
+        }
+        Some(if outside {
+            Sign::Negative
+        } else {
+            Sign::Positive
+        })
+    }
+
+    /// How many rays lie strictly outside a half-space, stopping early where none lies inside.
+    #[must_use]
+    pub fn count_outside(&self, space: &mut PluckerSpace, h: Halfspace) -> (usize, usize) {
+        let mut counts = (0, 0);
+        for ray in &self.rays {
+            match h.orient(space.sign(h.row, ray.vertex)) {
+                Sign::Positive => counts.0 += 1,
+                Sign::Negative => counts.1 += 1,
+                Sign::Zero => {}
+            }
+        }
+        counts
+    }
+
+    /// Splits the cone by a hyperplane.
+    ///
+    /// # Errors
+    /// If a part would have more than 128 facets.
+    pub fn split(&self, space: &mut PluckerSpace, h: Halfspace) -> Result<Split, ConeError> {
+        let mut signs = Vec::with_capacity(self.rays.len());
+        match self.classify(space, h, &mut signs) {
+            (_, false) => Ok(Split::Inside),
+            (false, true) => Ok(Split::Outside),
+            (true, true) => {
+                let fresh = self.crossings(space, h, &signs);
+                let inside = self.part(h, &signs, Sign::Positive, &fresh)?;
+                let outside = self.part(h.opposite(), &signs, Sign::Negative, &fresh)?;
+                Ok(Split::Both(inside, outside))
+            }
+        }
+    }
+
+    /// Keeps only the part inside a half-space.
+    ///
+    /// # Errors
+    /// [`ConeError::Flat`] if nothing is left.
+    pub fn cut(&mut self, space: &mut PluckerSpace, h: Halfspace) -> Result<(), ConeError> {
+        let mut signs = Vec::with_capacity(self.rays.len());
+        match self.classify(space, h, &mut signs) {
+            (false, _) => Err(ConeError::Flat),
+            (true, false) => {
+                // Redundant or touching: keep it where it is a facet, since faces may need it.
+                if signs.iter().filter(|s| s.is_zero()).count() >= 5 {
+                    *self = self.part(h, &signs, Sign::Positive, &[])?;
+                }
+                Ok(())
+            }
+            (true, true) => {
+                let fresh = self.crossings(space, h, &signs);
+                *self = self.part(h, &signs, Sign::Positive, &fresh)?;
+                Ok(())
+            }
+        }
+    }
+
+    /// The new rays: one on each 2-face between a ray inside and one outside.
+    fn crossings(&self, space: &mut PluckerSpace, h: Halfspace, signs: &[Sign]) -> Vec<Ray> {
+        let mut fresh = Vec::new();
+        for (i, p) in self
+            .rays
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| signs[*i].is_positive())
+        {
+            for (j, n) in self
+                .rays
+                .iter()
+                .enumerate()
+                .filter(|(j, _)| signs[*j].is_negative())
+            {
+                let common = p.tight & n.tight;
+                if common.count_ones() < 4 {
+                    continue;
+                }
+                let adjacent = self
+                    .rays
+                    .iter()
+                    .enumerate()
+                    .all(|(k, r)| r.tight & common != common || k == i || k == j);
+                if adjacent {
+                    fresh.push(self.crossing(space, h, p, n, common));
+                }
+            }
+        }
+        fresh
+    }
+
+    fn crossing(
+        &self,
+        space: &mut PluckerSpace,
+        h: Halfspace,
+        p: &Ray,
+        n: &Ray,
+        common: u128,
+    ) -> Ray {
+        let on: Vec<RowId> = bits(common).map(|k| self.slots[k].row).collect();
+        let rows = if on.len() == 4 {
+            on
+        } else {
+            space.independent(&on, 4)
+        };
+        if let &[a, b, c, d] = rows.as_slice()
+            && let Some(exact) = space.meet([a, b, c, d, h.row])
+        {
+            let vertex = space.push_vertex(exact);
+            // A facet that holds p but not n is strictly positive on every point between them.
+            if let Some(k) = bits(p.tight & !n.tight).next() {
+                let s = self.slots[k].orient(space.sign(self.slots[k].row, vertex));
+                if !s.is_zero() {
+                    if s.is_negative() {
+                        space.negate_vertex(vertex);
+                    }
+                    return Ray {
+                        vertex,
+                        tight: common,
+                    };
+                }
+            }
+        }
+        // The residues failed (never seen): a positive combination is always right, only wider.
+        let (wp, wn) = (
+            space.exact_dot(h.row, n.vertex),
+            space.exact_dot(h.row, p.vertex),
+        );
+        let abs = |v: IBig| if sign_of(&v).is_negative() { -v } else { v };
+        let (wp, wn) = (abs(wp), abs(wn));
+        let (vp, vn) = (space.big_vertex(p.vertex), space.big_vertex(n.vertex));
+        let v = std::array::from_fn(|k| &vp[k] * &wp + &vn[k] * &wn);
+        Ray {
+            vertex: space.push_vertex(ExactVertex::Wide(Box::new(v))),
+            tight: common,
+        }
+    }
+
+    fn part(
+        &self,
+        h: Halfspace,
+        signs: &[Sign],
+        keep: Sign,
+        fresh: &[Ray],
+    ) -> Result<Self, ConeError> {
+        let mut slots = self.slots.clone();
+        let mut live = self.live;
+        let slot = match self.slot_of(h.row) {
+            Some(k) => k,
+            None => {
+                let free = (!live).trailing_zeros() as usize;
+                if free >= 128 {
+                    return Err(ConeError::TooManyFacets);
+                }
+                if free == slots.len() {
+                    slots.push(h)
+                } else {
+                    slots[free] = h
+                }
+                live |= 1 << free;
+                free
+            }
+        };
+        slots[slot] = h;
+        let bit = 1_u128 << slot;
+        let mut rays = Vec::with_capacity(self.rays.len() + fresh.len());
+        for (ray, &s) in self.rays.iter().zip(signs) {
+            if s == keep {
+                rays.push(*ray);
+            } else if s.is_zero() {
+                rays.push(Ray {
+                    tight: ray.tight | bit,
+                    ..*ray
+                });
+            }
+        }
+        rays.extend(fresh.iter().map(|r| Ray {
+            tight: r.tight | bit,
+            ..*r
+        }));
+        let mut cone = Self { slots, live, rays };
+        cone.drop_redundant();
+        Ok(cone)
+    }
+
+    /// Drops half-spaces that fewer than five rays lie on: they are no facets.
+    fn drop_redundant(&mut self) {
+        let mut counts = [0_u8; 128];
+        for ray in &self.rays {
+            for k in bits(ray.tight) {
+                counts[k] = counts[k].saturating_add(1);
+            }
+        }
+        let mut dead = 0_u128;
+        for k in bits(self.live) {
+            if counts[k] < 5 {
+                dead |= 1 << k;
+            }
+        }
+        if dead != 0 {
+            self.live &= !dead;
+            for ray in &mut self.rays {
+                ray.tight &= !dead;
+            }
+        }
+    }
+
+    /// Checks every invariant: rays inside all half-spaces, tight exactly where recorded, each on
+    /// five independent rows at least.
+    ///
+    /// # Errors
+    /// A sentence that names the broken invariant.
+    pub fn sanity_check(&self, space: &mut PluckerSpace) -> Result<(), String> {
+        for (i, ray) in self.rays.iter().enumerate() {
+            for k in bits(self.live) {
+                let s = self.slots[k].orient(space.sign(self.slots[k].row, ray.vertex));
+                let tight = ray.tight >> k & 1 == 1;
+                if s.is_negative() || s.is_zero() != tight {
+                    return Err(format!(
+                        "ray {i} on slot {k}: sign {s:?}, recorded tight {tight}"
+                    ));
+                }
+            }
+            let rows: Vec<RowId> = bits(ray.tight).map(|k| self.slots[k].row).collect();
+            if space.independent(&rows, 5).len() < 5 {
+                return Err(format!(
+                    "ray {i} is not extreme: its {} tight rows have rank < 5",
+                    rows.len()
+                ));
+            }
+        }
+        for (i, a) in self.rays.iter().enumerate() {
+            if self.rays[i + 1..].iter().any(|b| b.tight == a.tight) {
+                return Err(format!("ray {i} occurs twice"));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn bits(mut set: u128) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        if set == 0 {
+            return None;
+        }
+        let k = set.trailing_zeros() as usize;
+        set &= set - 1;
+        Some(k)
+    })
+}

@@ -1,0 +1,492 @@
+//! The store of one query: hyperplane rows and vertices of line space, with exact signs.
+//!
+//! A vertex is kept as the exact cofactors of its five rows and, beside them, as the same vector
+//! rounded to doubles. A sign is decided by the doubles where their error bound allows it and by
+//! the integers otherwise.
+
+use std::collections::HashMap;
+
+use antumbra_kernel::plucker::{self, Row};
+use antumbra_kernel::{I256, Sign};
+use dashu_int::IBig;
+
+use crate::cone::Halfspace;
+
+/// A hyperplane of a [`PluckerSpace`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct RowId(pub(crate) u32);
+
+/// A vertex of a [`PluckerSpace`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct VertexId(pub(crate) u32);
+
+#[derive(Clone, Debug)]
+pub(crate) enum ExactRow {
+    /// Edge rows of 49 + 25 bits, and caps that exceed them by 7 bits at most.
+    Narrow(Row),
+    /// Rows of common lines and caps: any width.
+    Wide(Box<[IBig; 6]>),
+}
+
+#[derive(Clone, Debug)]
+pub(crate) enum ExactVertex {
+    /// On five narrow rows, at most two of them large: 195 + 14 bits, and 242 for a dot product
+    /// with a row.
+    Narrow([I256; 6]),
+    /// Anything else.
+    Wide(Box<[IBig; 6]>),
+}
+
+#[derive(Clone, Debug)]
+struct RowData {
+    rounded: [f64; 6],
+    exact: ExactRow,
+    /// Larger than an edge row, as caps are: at most two of these define a narrow vertex.
+    large: bool,
+}
+
+#[derive(Clone, Debug)]
+struct VertexData {
+    rounded: [f64; 6],
+    exact: ExactVertex,
+}
+
+/// Rows and vertices of one query. Rows that describe the same hyperplane are stored once.
+#[derive(Clone, Debug, Default)]
+pub struct PluckerSpace {
+    rows: Vec<RowData>,
+    by_row: HashMap<Row, u32, std::hash::BuildHasherDefault<RowHasher>>,
+    vertices: Vec<VertexData>,
+    exact_signs: u64,
+}
+
+/// A multiplicative hash: rows are already well spread, and the order of a map is never used.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct RowHasher(u64);
+
+impl std::hash::Hasher for RowHasher {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+    fn write(&mut self, bytes: &[u8]) {
+        for &b in bytes {
+            self.write_u64(u64::from(b));
+        }
+    }
+    fn write_u64(&mut self, v: u64) {
+        self.0 = (self.0.rotate_left(5) ^ v).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        self.0 ^= self.0 >> 29;
+    }
+    fn write_i64(&mut self, v: i64) {
+        self.write_u64(v as u64);
+    }
+    fn write_usize(&mut self, v: usize) {
+        self.write_u64(v as u64);
+    }
+}
+
+/// Edge rows stay below these magnitudes (moment, direction).
+const EDGE: (i64, i64) = (1 << 48, 1 << 24);
+/// Larger narrow rows stay below these.
+const LARGE: (i64, i64) = (1 << 55, 1 << 31);
+
+fn below(row: &Row, (moment, direction): (i64, i64)) -> bool {
+    row[..3].iter().all(|c| c.abs() < moment) && row[3..].iter().all(|c| c.abs() < direction)
+}
+
+impl RowData {
+    fn new(row: Row) -> Self {
+        let exact = if below(&row, LARGE) {
+            ExactRow::Narrow(row)
+        } else {
+            ExactRow::Wide(Box::new(row.map(IBig::from)))
+        };
+        Self {
+            rounded: row.map(|c| c as f64),
+            exact,
+            large: !below(&row, EDGE),
+        }
+    }
+}
+
+impl PluckerSpace {
+    /// An empty space.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Forgets all rows and vertices, keeping the memory.
+    pub fn clear(&mut self) {
+        self.rows.clear();
+        self.by_row.clear();
+        self.vertices.clear();
+    }
+
+    /// How many signs the doubles could not decide so far.
+    #[must_use]
+    pub fn exact_signs(&self) -> u64 {
+        self.exact_signs
+    }
+
+    /// The side of a hyperplane where `sign * row` is positive; `negative` asks for the other side.
+    pub fn halfspace(&mut self, row: &Row, negative: bool) -> Halfspace {
+        let (id, flipped) = self.intern(row);
+        Halfspace {
+            row: id,
+            negative: negative != flipped,
+        }
+    }
+
+    /// The hyperplane with an integer row, and whether it is stored with the opposite sign.
+    ///
+    /// The row is made primitive first, so that edges on a common line share a hyperplane.
+    ///
+    /// # Panics
+    /// In debug builds, if the row is zero.
+    pub fn intern(&mut self, row: &Row) -> (RowId, bool) {
+        debug_assert!(row.iter().any(|&c| c != 0), "a zero row is no hyperplane");
+        let g = row.iter().fold(0_u64, |g, &c| gcd(g, c.unsigned_abs()));
+        let lead_negative = row.iter().find(|&&c| c != 0).is_some_and(|&c| c < 0);
+        let divisor = if lead_negative { -(g as i64) } else { g as i64 };
+        let key: Row = if divisor == 1 {
+            *row
+        } else {
+            row.map(|c| c / divisor)
+        };
+        if let Some(&id) = self.by_row.get(&key) {
+            return (RowId(id), lead_negative);
+        }
+        let id = self.rows.len() as u32;
+        self.rows.push(RowData::new(key));
+        self.by_row.insert(key, id);
+        (RowId(id), lead_negative)
+    }
+
+    /// The positive side of a hyperplane with a row of any width.
+    pub fn intern_wide(&mut self, row: [IBig; 6]) -> Halfspace {
+        let small: Option<Vec<i64>> = row.iter().map(|c| i64::try_from(c).ok()).collect();
+        if let Some(small) = small {
+            let row: Row = std::array::from_fn(|k| small[k]);
+            let (id, negative) = self.intern(&row);
+            return Halfspace { row: id, negative };
+        }
+        let id = RowId(self.rows.len() as u32);
+        let rounded = std::array::from_fn(|k| row[k].to_f64().value());
+        self.rows.push(RowData {
+            rounded,
+            exact: ExactRow::Wide(Box::new(row)),
+            large: true,
+        });
+        Halfspace {
+            row: id,
+            negative: false,
+        }
+    }
+
+    /// The row as doubles; each coefficient within a relative 2^-53.
+    #[inline]
+    #[must_use]
+    pub fn rounded_row(&self, row: RowId) -> &[f64; 6] {
+        &self.rows[row.0 as usize].rounded
+    }
+
+    /// The vertex as doubles, scaled so that its largest coordinate is about 1; each coordinate
+    /// within a relative 2^-52.
+    #[inline]
+    #[must_use]
+    pub fn rounded_vertex(&self, vertex: VertexId) -> &[f64; 6] {
+        &self.vertices[vertex.0 as usize].rounded
+    }
+
+    pub(crate) fn exact_row(&self, row: RowId) -> &ExactRow {
+        &self.rows[row.0 as usize].exact
+    }
+
+    pub(crate) fn exact_vertex(&self, vertex: VertexId) -> &ExactVertex {
+        &self.vertices[vertex.0 as usize].exact
+    }
+
+    /// The coordinates of a vertex as big integers.
+    #[must_use]
+    pub fn big_vertex(&self, vertex: VertexId) -> [IBig; 6] {
+        match self.exact_vertex(vertex) {
+            ExactVertex::Narrow(v) => v.map(|c| big(&c)),
+            ExactVertex::Wide(v) => (**v).clone(),
+        }
+    }
+
+    /// The coefficients of a row as big integers.
+    #[must_use]
+    pub fn big_row(&self, row: RowId) -> [IBig; 6] {
+        match self.exact_row(row) {
+            ExactRow::Narrow(v) => v.map(IBig::from),
+            ExactRow::Wide(v) => (**v).clone(),
+        }
+    }
+
+    /// The sign of `row . vertex`.
+    ///
+    /// The rounded dot product of six terms, each factor within 2^-52 of the truth, errs by less
+    /// than 2^-48 of the sum of the terms' magnitudes (2 * 2^-52 for the factors, 2^-53 for each
+    /// product, 5 * 2^-53 for the additions: below 2^-49; the sum of magnitudes is itself rounded).
+    #[inline]
+    #[must_use]
+    pub fn sign(&mut self, row: RowId, vertex: VertexId) -> Sign {
+        let h = &self.rows[row.0 as usize].rounded;
+        let v = &self.vertices[vertex.0 as usize].rounded;
+        let mut sum = 0.0;
+        let mut magnitude = 0.0;
+        for k in 0..6 {
+            let t = h[k] * v[k];
+            sum += t;
+            magnitude += t.abs();
+        }
+        let bound = magnitude * FILTER;
+        if sum > bound {
+            return Sign::Positive;
+        }
+        if sum < -bound {
+            return Sign::Negative;
+        }
+        self.exact_signs += 1;
+        self.exact_sign(row, vertex)
+    }
+
+    #[cold]
+    fn exact_sign(&self, row: RowId, vertex: VertexId) -> Sign {
+        if let (ExactRow::Narrow(h), ExactVertex::Narrow(v)) =
+            (self.exact_row(row), self.exact_vertex(vertex))
+        {
+            return plucker::dot(h, v).sign();
+        }
+        sign_of(&self.exact_dot(row, vertex))
+    }
+
+    /// `row . vertex` as a big integer.
+    #[must_use]
+    pub fn exact_dot(&self, row: RowId, vertex: VertexId) -> IBig {
+        let h = self.big_row(row);
+        let v = self.big_vertex(vertex);
+        h.iter().zip(&v).map(|(a, b)| a * b).sum()
+    }
+
+    /// The sign of the bilinear form of two vertices; of twice the quadric if they are the same.
+    ///
+    /// Filter as in [`PluckerSpace::sign`].
+    #[must_use]
+    pub fn bilinear_sign(&mut self, v: VertexId, w: VertexId) -> Sign {
+        let (a, b) = (self.rounded_vertex(v), self.rounded_vertex(w));
+        let mut sum = 0.0;
+        let mut magnitude = 0.0;
+        for k in 0..6 {
+            let t = a[k] * b[(k + 3) % 6];
+            sum += t;
+            magnitude += t.abs();
+        }
+        let bound = magnitude * FILTER;
+        if sum > bound {
+            return Sign::Positive;
+        }
+        if sum < -bound {
+            return Sign::Negative;
+        }
+        self.exact_signs += 1;
+        if let (ExactVertex::Narrow(a), ExactVertex::Narrow(b)) =
+            (self.exact_vertex(v), self.exact_vertex(w))
+        {
+            return plucker::bilinear(a, b).sign();
+        }
+        sign_of(&self.big_bilinear(v, w))
+    }
+
+    /// The bilinear form of two vertices as a big integer.
+    #[must_use]
+    pub fn big_bilinear(&self, v: VertexId, w: VertexId) -> IBig {
+        let (a, b) = (self.big_vertex(v), self.big_vertex(w));
+        (0..6).map(|k| &a[k] * &b[(k + 3) % 6]).sum()
+    }
+
+    /// The vertex on five independent rows, its sign still open; `None` if they are dependent.
+    pub(crate) fn meet(&self, rows: [RowId; 5]) -> Option<ExactVertex> {
+        let narrow = rows.map(|r| match self.exact_row(r) {
+            ExactRow::Narrow(n) => Some(n),
+            ExactRow::Wide(_) => None,
+        });
+        let large = rows
+            .iter()
+            .filter(|r| self.rows[r.0 as usize].large)
+            .count();
+        if let [Some(a), Some(b), Some(c), Some(d), Some(e)] = narrow
+            && large <= 2
+        {
+            let v = plucker::cofactors([a, b, c, d, e]);
+            return v
+                .iter()
+                .any(|c| !c.sign().is_zero())
+                .then_some(ExactVertex::Narrow(v));
+        }
+        let big: Vec<[IBig; 6]> = rows.iter().map(|&r| self.big_row(r)).collect();
+        let v: [IBig; 6] = std::array::from_fn(|j| {
+            let minor: Vec<Vec<IBig>> = big
+                .iter()
+                .map(|r| (0..6).filter(|&k| k != j).map(|k| r[k].clone()).collect())
+                .collect();
+            let d = determinant(minor);
+            if j % 2 == 0 { d } else { -d }
+        });
+        v.iter()
+            .any(|c| *c != IBig::ZERO)
+            .then(|| ExactVertex::Wide(Box::new(v)))
+    }
+
+    pub(crate) fn push_vertex(&mut self, exact: ExactVertex) -> VertexId {
+        let rounded = round_vertex(&exact);
+        self.vertices.push(VertexData { rounded, exact });
+        VertexId((self.vertices.len() - 1) as u32)
+    }
+
+    /// Turns a vertex into its opposite.
+    pub(crate) fn negate_vertex(&mut self, vertex: VertexId) {
+        let data = &mut self.vertices[vertex.0 as usize];
+        data.rounded = data.rounded.map(|c| -c);
+        match &mut data.exact {
+            ExactVertex::Narrow(v) => *v = v.map(|c| -c),
+            ExactVertex::Wide(v) => {
+                for c in v.iter_mut() {
+                    *c = -c.clone();
+                }
+            }
+        }
+    }
+
+    /// The rank of some rows modulo a 61-bit prime, and which rows (in order) attain it, stopping
+    /// at `wanted`. Independence modulo the prime implies independence.
+    pub(crate) fn independent(&self, rows: &[RowId], wanted: usize) -> Vec<RowId> {
+        let mut basis: Vec<([u64; 6], usize)> = Vec::with_capacity(wanted);
+        let mut chosen = Vec::with_capacity(wanted);
+        for &row in rows {
+            let mut r = self.residues(row);
+            for (b, pivot) in &basis {
+                let factor = r[*pivot];
+                if factor != 0 {
+                    for k in 0..6 {
+                        r[k] = sub_mod(r[k], mul_mod(factor, b[k]));
+                    }
+                }
+            }
+            if let Some(pivot) = r.iter().position(|&c| c != 0) {
+                let inverse = pow_mod(r[pivot], PRIME - 2);
+                let b = r.map(|c| mul_mod(c, inverse));
+                basis.push((b, pivot));
+                chosen.push(row);
+                if chosen.len() == wanted {
+                    break;
+                }
+            }
+        }
+        chosen
+    }
+
+    fn residues(&self, row: RowId) -> [u64; 6] {
+        match self.exact_row(row) {
+            ExactRow::Narrow(r) => r.map(|c| c.rem_euclid(PRIME as i64) as u64),
+            ExactRow::Wide(r) => std::array::from_fn(|k| {
+                let p = IBig::from(PRIME);
+                let m = ((&r[k] % &p) + &p) % &p;
+                u64::try_from(&m).unwrap_or(0)
+            }),
+        }
+    }
+}
+
+/// Relative error bound of the filters, proved at [`PluckerSpace::sign`].
+const FILTER: f64 = 1.0 / (1_u64 << 48) as f64;
+
+/// The Mersenne prime 2^61 - 1.
+const PRIME: u64 = (1 << 61) - 1;
+
+fn mul_mod(a: u64, b: u64) -> u64 {
+    (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64
+}
+
+fn sub_mod(a: u64, b: u64) -> u64 {
+    if a >= b { a - b } else { a + PRIME - b }
+}
+
+fn pow_mod(mut base: u64, mut exponent: u64) -> u64 {
+    let mut out = 1;
+    while exponent > 0 {
+        if exponent & 1 == 1 {
+            out = mul_mod(out, base);
+        }
+        base = mul_mod(base, base);
+        exponent >>= 1;
+    }
+    out
+}
+
+fn gcd(mut a: u64, mut b: u64) -> u64 {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a
+}
+
+pub(crate) fn sign_of(v: &IBig) -> Sign {
+    Sign::of_ordering(v.cmp(&IBig::ZERO))
+}
+
+pub(crate) fn big(v: &I256) -> IBig {
+    let negative = v.is_negative();
+    let m = if negative { -*v } else { *v };
+    let out = m
+        .limbs()
+        .iter()
+        .rev()
+        .fold(IBig::ZERO, |out, &l| (out << 64) + IBig::from(l));
+    if negative { -out } else { out }
+}
+
+fn round_vertex(exact: &ExactVertex) -> [f64; 6] {
+    match exact {
+        ExactVertex::Narrow(v) => {
+            let e = v.iter().map(|c| c.bits()).max().unwrap_or(0) as i32;
+            v.map(|c| c.to_f64_scaled(e))
+        }
+        ExactVertex::Wide(v) => {
+            use dashu_int::ops::BitTest;
+            let e = v.iter().map(BitTest::bit_len).max().unwrap_or(0);
+            std::array::from_fn(|k| {
+                // The 100 leading bits of each coordinate on its own: a relative error below 2^-52
+                // as long as coordinates differ by fewer than 900 bits, far beyond any width here.
+                let shift = v[k].bit_len().saturating_sub(100);
+                (v[k].clone() >> shift).to_f64().value() * 2_f64.powi(shift as i32 - e as i32)
+            })
+        }
+    }
+}
+
+/// The determinant of a square matrix of big integers (Bareiss elimination).
+fn determinant(mut m: Vec<Vec<IBig>>) -> IBig {
+    let n = m.len();
+    let mut previous = IBig::ONE;
+    let mut negative = false;
+    for k in 0..n - 1 {
+        if m[k][k] == IBig::ZERO {
+            let Some(swap) = (k + 1..n).find(|&i| m[i][k] != IBig::ZERO) else {
+                return IBig::ZERO;
+            };
+            m.swap(k, swap);
+            negative = !negative;
+        }
+        for i in k + 1..n {
+            for j in k + 1..n {
+                m[i][j] = (&m[i][j] * &m[k][k] - &m[i][k] * &m[k][j]) / &previous;
+            }
+        }
+        previous = m[k][k].clone();
+    }
+    let d = m[n - 1][n - 1].clone();
+    if negative { -d } else { d }
+}

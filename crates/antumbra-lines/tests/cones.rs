@@ -1,0 +1,166 @@
+//! Laws of Plücker cones: split and rejoin, rays inside, real lines found where they are.
+
+use antumbra_kernel::plucker::{edge_row, line_through};
+use antumbra_kernel::{Plane, Point, Sign};
+use antumbra_lines::{
+    Cone, ConeError, Gate, PluckerSpace, RealLines, Split, real_lines, start_halfspaces,
+};
+
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, n: i32) -> i32 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        ((self.0 >> 20) % n as u64) as i32
+    }
+    fn point(&mut self, reach: i32, z: i32) -> Point {
+        Point::new(
+            self.below(2 * reach + 1) - reach,
+            self.below(2 * reach + 1) - reach,
+            z,
+        )
+    }
+}
+
+fn gate(corners: &[Point]) -> Gate {
+    Gate {
+        corners: corners.to_vec(),
+        plane: Plane::through(corners[0], corners[1], corners[2]),
+    }
+}
+
+fn square(half: i32, z: i32) -> Gate {
+    gate(&[
+        Point::new(-half, -half, z),
+        Point::new(half, -half, z),
+        Point::new(half, half, z),
+        Point::new(-half, half, z),
+    ])
+}
+
+fn triangle(rng: &mut Random, reach: i32, z: i32, slant: i32) -> Option<Gate> {
+    let mut p: Vec<Point> = (0..3)
+        .map(|_| {
+            let lift = rng.below(2 * slant + 1) - slant;
+            rng.point(reach, z + lift)
+        })
+        .collect();
+    let plane = Plane::through(p[0], p[1], p[2]);
+    if plane.normal[2] == 0 {
+        return None;
+    }
+    if plane.normal[2] < 0 {
+        p.reverse();
+    }
+    Some(gate(&p))
+}
+
+#[test]
+fn the_start_polytope_holds_every_line_between_its_polygons() {
+    let mut rng = Random(5);
+    for round in 0..200 {
+        let reach = if round % 2 == 0 { 4 } else { 1 << 20 };
+        let (Some(a), Some(b)) = (
+            triangle(&mut rng, reach, 0, 0),
+            triangle(&mut rng, reach, 2 * reach, reach / 2),
+        ) else {
+            continue;
+        };
+        let mut space = PluckerSpace::new();
+        let start = match start_halfspaces(&mut space, &a, &b) {
+            Ok(start) => start,
+            Err(ConeError::Flat) => continue,
+            Err(e) => panic!("{e}"),
+        };
+        let cone = Cone::new(&mut space, &start).expect("a pair of polygons spans a cone");
+        cone.sanity_check(&mut space)
+            .expect("the start polytope is sound");
+        assert_eq!(real_lines(&mut space, &cone), RealLines::Some);
+        for &p in &a.corners {
+            for &q in &b.corners {
+                if b.plane.side(p) == Sign::Positive || a.plane.side(q) == Sign::Negative {
+                    continue;
+                }
+                let line = line_through(p, q);
+                for h in cone.halfspaces() {
+                    let row = space.big_row(h.row);
+                    let value: dashu_int::IBig = (0..6).map(|k| &row[k] * line[k]).sum();
+                    assert!(if h.negative {
+                        value <= 0.into()
+                    } else {
+                        value >= 0.into()
+                    });
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn splitting_keeps_the_cone_sound_and_loses_nothing() {
+    let mut rng = Random(11);
+    let mut splits = 0;
+    for round in 0..120 {
+        let reach = if round % 3 == 0 { 3 } else { 1 << 22 };
+        let (Some(a), Some(b)) = (
+            triangle(&mut rng, reach, 0, 0),
+            triangle(&mut rng, reach, reach, 0),
+        ) else {
+            continue;
+        };
+        let mut space = PluckerSpace::new();
+        let Ok(start) = start_halfspaces(&mut space, &a, &b) else {
+            continue;
+        };
+        let mut cone = Cone::new(&mut space, &start).expect("pointed");
+        for _ in 0..12 {
+            let (u, v) = (rng.point(reach, reach / 2), rng.point(reach, reach / 3));
+            if u == v {
+                continue;
+            }
+            let h = space.halfspace(&edge_row(u, v), false);
+            match cone.split(&mut space, h).expect("few facets") {
+                Split::Both(inside, outside) => {
+                    splits += 1;
+                    inside.sanity_check(&mut space).expect("inside part");
+                    outside.sanity_check(&mut space).expect("outside part");
+                    cone = if rng.below(2) == 0 { inside } else { outside };
+                }
+                Split::Inside | Split::Outside => {}
+            }
+        }
+    }
+    assert!(splits > 200, "only {splits} splits were exercised");
+}
+
+/// The counterexample to looking at edges only: every vertex has Q > 0, no edge of the cell
+/// crosses the quadric, and yet real lines fill it.
+#[test]
+fn real_lines_that_touch_no_edge_are_found() {
+    let mut space = PluckerSpace::new();
+    let (a, b) = (square(4000, -1000), square(4000, 1000));
+    let mut start = start_halfspaces(&mut space, &a, &b).expect("two squares");
+    let turned = |(x, y): (i32, i32), z: i32| Point::new(-y, x, z);
+    for (k, (x, y)) in [(30, 20), (500, 0), (-300, 400), (-200, -450)]
+        .into_iter()
+        .enumerate()
+    {
+        let row = edge_row(Point::new(x, y, -1000), turned((x, y), 1000));
+        start.push(space.halfspace(&row, k != 0));
+    }
+    for flip in [0_u8, 1] {
+        // One of the two orientations of the four rows is the cell of the note.
+        let mut rows = start.clone();
+        if flip == 1 {
+            for h in rows.iter_mut().rev().take(4) {
+                *h = h.opposite();
+            }
+        }
+        if let Ok(cone) = Cone::new(&mut space, &rows) {
+            let verdict = real_lines(&mut space, &cone);
+            println!("flip {flip}: {} vertices, {verdict:?}", cone.ray_count());
+        }
+    }
+}
