@@ -20,7 +20,7 @@ const LOOPS: f64 = 0.15;
 pub struct MazeParams {
     /// Rooms along each side.
     pub rooms: u32,
-    /// Pieces of furniture a room, at most 16.
+    /// Pieces of furniture a room, at most 9.
     pub furniture: u32,
     /// What chance depends on.
     pub seed: u64,
@@ -30,7 +30,7 @@ pub struct MazeParams {
 ///
 /// Passages of 1.6 m follow a random spanning tree, so every room can be reached; one in seven of the
 /// other walls has a passage too. Rooms hold chairs, tables, shelves, cabinets, sofas and bins on a
-/// raster of 4 x 4 places. Every wall and every piece is an object; floor and ceiling are one each.
+/// raster of 3 x 3 places. Every wall and every piece is an object; floor and ceiling are one each.
 #[must_use]
 pub fn maze(params: &MazeParams) -> SceneInput {
     let mut rng = SplitMix64::new(params.seed);
@@ -75,7 +75,7 @@ pub fn maze(params: &MazeParams) -> SceneInput {
             let length = PITCH - (low + high) * THICK / 2.0;
             objects.push(inner_wall(place, length, west, &mut rng).object("wall-y"));
         }
-        furnish(&mut objects, [x, y], params.furniture.min(16), &mut rng);
+        furnish(&mut objects, [x, y], params.furniture.min(9), &mut rng);
     }
     let source_name = format!(
         "maze --rooms {} --furniture {} --seed {}",
@@ -158,7 +158,7 @@ fn furnish(
         Piece::Sofa,
         Piece::Bin,
     ];
-    let mut free: Vec<u32> = (0..16).collect();
+    let mut free: Vec<u32> = (0..9).collect();
     for _ in 0..count {
         let spot = free.swap_remove(rng.below(free.len() as u32) as usize);
         let piece = KINDS[rng.below(8) as usize];
@@ -169,8 +169,8 @@ fn furnish(
             4
         };
         let degrees = f64::from(rng.below(turns) * (360 / turns));
-        let at = |i: u32, start: f64| start + 0.6 + 1.6 * f64::from(i);
-        objects.push(piece.at(Place::new([at(spot % 4, x), at(spot / 4, y), 0.0], degrees)));
+        let at = |i: u32, start: f64| start + 1.2 + 1.8 * f64::from(i);
+        objects.push(piece.at(Place::new([at(spot % 3, x), at(spot / 3, y), 0.0], degrees)));
     }
 }
 
