@@ -6,6 +6,8 @@ use antumbra_kernel::{Aabb, Grid, Plane, Point};
 
 use crate::kd::KdTree;
 
+mod check;
+
 /// The number of an object, zero-based in the order of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ObjectId(pub u32);
@@ -49,10 +51,11 @@ pub struct PolygonRef<'a> {
     pub id: PolygonId,
     /// The object it belongs to.
     pub object: ObjectId,
-    /// At least three corners in order, exactly coplanar, strictly convex but for collinear
-    /// corners on its edges (inserted where a foreign vertex touched).
+    /// At least three corners in order, exactly coplanar and strictly convex.
     pub corners: &'a [Point],
-    /// Its plane; the corners turn counter-clockwise about the normal.
+    /// Its plane; the corners turn counter-clockwise about the normal. The normal is primitive and
+    /// its first non-zero component positive: polygons are coplanar if and only if their planes
+    /// are equal.
     pub plane: &'a Plane,
     /// Whether it blocks lines.
     pub occludes: bool,
@@ -62,7 +65,14 @@ impl PolygonRef<'_> {
     /// The smallest box around the polygon.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
-        Aabb::around(self.corners.iter().copied()).expect("a polygon has corners")
+        let first = self.corners[0];
+        self.corners[1..].iter().fold(
+            Aabb {
+                min: first,
+                max: first,
+            },
+            |b, &p| b.with(p),
+        )
     }
 }
 
@@ -139,5 +149,50 @@ impl Scene {
     #[must_use]
     pub fn kd(&self) -> &KdTree {
         &self.kd
+    }
+
+    /// The polygons of an object.
+    ///
+    /// # Panics
+    /// If the scene has no such object.
+    pub fn polygons_of(&self, id: ObjectId) -> impl Iterator<Item = PolygonRef<'_>> {
+        self.objects[id.index()]
+            .polygons
+            .clone()
+            .map(|i| self.polygon(PolygonId(i)))
+    }
+
+    /// The smallest box around the polygons of an object; `None` if it has none.
+    ///
+    /// # Panics
+    /// If the scene has no such object.
+    #[must_use]
+    pub fn object_bounds(&self, id: ObjectId) -> Option<Aabb> {
+        self.polygons_of(id)
+            .map(|polygon| polygon.bounds())
+            .reduce(Aabb::union)
+    }
+
+    /// The object with a name, or with this decimal id; of several with one name the first.
+    /// A name goes before an id.
+    #[must_use]
+    pub fn find_object(&self, name: &str) -> Option<ObjectId> {
+        let by_name = self.objects.iter().position(|object| object.name == name);
+        let by_id = || {
+            name.parse::<usize>()
+                .ok()
+                .filter(|&i| i < self.objects.len())
+        };
+        by_name.or_else(by_id).map(|i| ObjectId(i as u32))
+    }
+
+    /// Checks every invariant of a scene and says which one is broken.
+    ///
+    /// # Errors
+    /// The first violation found, as a sentence: a polygon that is not planar, not strictly convex
+    /// or not counter-clockwise about a canonical normal, inconsistent ranges, a polygon missing
+    /// from a leaf of the kD-tree, or a wrong box.
+    pub fn sanity_check(&self) -> Result<(), String> {
+        check::check(self)
     }
 }
