@@ -11,4 +11,4 @@ mod start;
 pub use cone::{Cone, ConeError, Halfspace, Split};
 pub use quadric::{RealLines, real_lines};
 pub use space::{PluckerSpace, RowId, VertexId};
-pub use start::{Gate, common_line, common_line_row, start_halfspaces};
+pub use start::{Chord, Gate, Start, common_line, common_line_row, start_halfspaces};

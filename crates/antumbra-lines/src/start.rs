@@ -40,6 +40,27 @@ impl Gate {
     }
 }
 
+/// The half-spaces of a start polytope.
+#[derive(Clone, Debug)]
+pub struct Start {
+    /// All of them hold for every line between the gates.
+    pub halfspaces: Vec<Halfspace>,
+    /// Where the gates share a stretch of the common line of their planes, no cap exists and the
+    /// half-spaces contain a whole line. Cutting by this hyperplane leaves two pointed cones.
+    pub chord: Option<Chord>,
+}
+
+/// The line from a corner of the source gate to a corner of the target gate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Chord {
+    /// The positive side of its hyperplane.
+    pub halfspace: Halfspace,
+    /// Number of the source gate's corner.
+    pub from: u32,
+    /// Number of the target gate's corner.
+    pub to: u32,
+}
+
 /// A point with homogeneous integer coordinates, `w > 0`.
 type Homogeneous = ([IBig; 3], IBig);
 
@@ -50,22 +71,20 @@ type Homogeneous = ([IBig; 3], IBig);
 /// of `from` behind `to` counts, and a row for the common line is added where both cross.
 ///
 /// # Errors
-/// [`ConeError::Flat`] if there is no such line with both crossings in the open sides,
-/// [`ConeError::NotPointed`] if the polygons share a stretch of the common line of their planes
-/// so that no cap exists.
+/// [`ConeError::Flat`] if there is no such line with both crossings in the open sides.
 pub fn start_halfspaces(
     space: &mut PluckerSpace,
     from: &Gate,
     to: &Gate,
-) -> Result<Vec<Halfspace>, ConeError> {
+) -> Result<Start, ConeError> {
     let to_sides: Vec<Sign> = to.corners.iter().map(|&p| from.plane.side(p)).collect();
     let from_sides: Vec<Sign> = from
         .corners
         .iter()
         .map(|&p| to.plane.side(p).flip())
         .collect();
-    let far = most(&to.corners, |p| from.plane.evaluate(p)).ok_or(ConeError::Flat)?;
-    let near = most(&from.corners, |p| -to.plane.evaluate(p)).ok_or(ConeError::Flat)?;
+    let (far_index, far) = most(&to.corners, |p| from.plane.evaluate(p)).ok_or(ConeError::Flat)?;
+    let (near_index, near) = most(&from.corners, |p| -to.plane.evaluate(p)).ok_or(ConeError::Flat)?;
     if !from.plane.side(far).is_positive() || !to.plane.side(near).is_negative() {
         return Err(ConeError::Flat);
     }
@@ -97,13 +116,15 @@ pub fn start_halfspaces(
             wide_caps(&lift(&from.corners), &lift(&to.corners), &t, &w)
         })
     };
-    if caps.is_empty() {
-        return Err(ConeError::NotPointed);
-    }
+    let chord = caps.is_empty().then(|| Chord {
+        halfspace: space.halfspace(&t, false),
+        from: near_index,
+        to: far_index,
+    });
     for cap in caps {
         halfspaces.push(space.intern_wide(cap));
     }
-    Ok(halfspaces)
+    Ok(Start { halfspaces, chord })
 }
 
 /// The row of the common line of two planes, signed so that the line near -> far is inside.
@@ -143,11 +164,10 @@ pub fn common_line_row(first: &Plane, second: &Plane) -> [IBig; 6] {
     [m0, m1, m2, d0, d1, d2]
 }
 
-fn most(corners: &[Point], value: impl Fn(Point) -> i128) -> Option<Point> {
-    corners
-        .iter()
-        .copied()
-        .max_by_key(|&p| (value(p), std::cmp::Reverse(p)))
+fn most(corners: &[Point], value: impl Fn(Point) -> i128) -> Option<(u32, Point)> {
+    let key = |&(_, &p): &(usize, &Point)| (value(p), std::cmp::Reverse(p));
+    let (index, point) = corners.iter().enumerate().max_by_key(key)?;
+    Some((index as u32, *point))
 }
 
 /// The rows of the edges that are not wholly on the unwanted side.

@@ -3,14 +3,20 @@
 //! This crate never sees a line: what can be seen is decided where it meets line space.
 
 mod builder;
+mod cells;
 mod input;
 mod kd;
+mod meet;
 mod report;
 mod scene;
 pub mod synth;
+mod target_tree;
 
 pub use builder::{BuildError, SceneBuilder};
+pub use cells::{CellKind, ViewCell};
 pub use input::{Faces, ObjectInput, OccluderPolicy, PartInput, SceneInput};
 pub use kd::{KdBox, KdHeuristic, KdNode, KdTree, SeenPolygons};
+pub use meet::{BoxContact, box_contact, polygons_touch};
 pub use report::{BuildReport, ObjectRepairs, RepairCounts};
 pub use scene::{Object, ObjectId, PolygonId, PolygonRef, Scene};
+pub use target_tree::{TargetKind, TargetNode, TargetTree};

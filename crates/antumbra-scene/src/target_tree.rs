@@ -1,0 +1,152 @@
+//! A hierarchy of what may be seen: objects, then the polygons of each object.
+//!
+//! Verdicts are about objects, so a tree whose upper nodes are sets of whole objects lets one
+//! proof hide many of them; below a single object the tree goes on over its polygons. The
+//! kD-tree, whose leaves cut objects apart, serves for casting and for gathering occluders.
+
+use antumbra_kernel::Aabb;
+
+use crate::{ObjectId, PolygonId, Scene};
+
+/// A node of a [`TargetTree`].
+#[derive(Clone, Copy, Debug)]
+pub struct TargetNode {
+    /// The box around everything below.
+    pub bounds: Aabb,
+    /// The object that everything below belongs to, if it is one.
+    pub object: Option<ObjectId>,
+    /// What is below.
+    pub kind: TargetKind,
+}
+
+/// What is below a [`TargetNode`].
+#[derive(Clone, Copy, Debug)]
+pub enum TargetKind {
+    /// Two nodes.
+    Inner(u32, u32),
+    /// One polygon.
+    Polygon(PolygonId),
+}
+
+/// A binary bounding-volume hierarchy over the objects of a scene and their polygons.
+#[derive(Clone, Debug)]
+pub struct TargetTree {
+    nodes: Vec<TargetNode>,
+    root: Option<u32>,
+    roots: Vec<Option<u32>>,
+}
+
+struct Item {
+    bounds: Aabb,
+    node: u32,
+}
+
+impl TargetTree {
+    /// Builds the hierarchy by binned surface-area splits; `n log n`.
+    #[must_use]
+    pub fn new(scene: &Scene) -> Self {
+        let mut nodes = Vec::with_capacity(2 * scene.polygon_count());
+        let mut roots = Vec::with_capacity(scene.objects().len());
+        let mut objects = Vec::new();
+        for (i, object) in scene.objects().iter().enumerate() {
+            let id = ObjectId(i as u32);
+            let mut items: Vec<Item> = object
+                .polygons
+                .clone()
+                .map(|p| {
+                    let polygon = PolygonId(p);
+                    let bounds = scene.polygon(polygon).bounds();
+                    let kind = TargetKind::Polygon(polygon);
+                    nodes.push(TargetNode { bounds, object: Some(id), kind });
+                    Item { bounds, node: nodes.len() as u32 - 1 }
+                })
+                .collect();
+            let root = build(&mut nodes, &mut items, Some(id));
+            if let Some(root) = root {
+                objects.push(Item { bounds: nodes[root as usize].bounds, node: root });
+            }
+            roots.push(root);
+        }
+        let root = build(&mut nodes, &mut objects, None);
+        Self { nodes, root, roots }
+    }
+
+    /// The node over all objects; `None` for an empty scene.
+    #[must_use]
+    pub fn root(&self) -> Option<u32> {
+        self.root
+    }
+
+    /// The node over one object; `None` if it has no polygons.
+    #[must_use]
+    pub fn object_root(&self, id: ObjectId) -> Option<u32> {
+        self.roots[id.index()]
+    }
+
+    /// A node.
+    #[must_use]
+    pub fn node(&self, index: u32) -> &TargetNode {
+        &self.nodes[index as usize]
+    }
+}
+
+fn build(nodes: &mut Vec<TargetNode>, items: &mut [Item], object: Option<ObjectId>) -> Option<u32> {
+    match items {
+        [] => None,
+        [one] => Some(one.node),
+        _ => {
+            let at = partition(items);
+            let (a, b) = items.split_at_mut(at);
+            let (left, right) = (build(nodes, a, object)?, build(nodes, b, object)?);
+            let bounds = nodes[left as usize].bounds.union(nodes[right as usize].bounds);
+            nodes.push(TargetNode { bounds, object, kind: TargetKind::Inner(left, right) });
+            Some(nodes.len() as u32 - 1)
+        }
+    }
+}
+
+const BINS: usize = 16;
+
+/// Orders the items so that a cheap split lies at the returned place, never at an end.
+fn partition(items: &mut [Item]) -> usize {
+    let mut lo = [i64::MAX; 3];
+    let mut hi = [i64::MIN; 3];
+    for item in items.iter() {
+        let c = item.bounds.center_doubled();
+        for k in 0..3 {
+            lo[k] = lo[k].min(c[k]);
+            hi[k] = hi[k].max(c[k]);
+        }
+    }
+    let axis = (0..3).max_by_key(|&k| hi[k] - lo[k]).unwrap_or(0);
+    let width = hi[axis] - lo[axis];
+    if width == 0 {
+        return items.len() / 2;
+    }
+    let bin = |b: &Aabb| ((b.center_doubled()[axis] - lo[axis]) * BINS as i64 / (width + 1)) as usize;
+    let mut boxes: [Option<Aabb>; BINS] = [None; BINS];
+    let mut counts = [0_usize; BINS];
+    for item in items.iter() {
+        let b = bin(&item.bounds);
+        counts[b] += 1;
+        boxes[b] = Some(boxes[b].map_or(item.bounds, |x| x.union(item.bounds)));
+    }
+    let best = (1..BINS)
+        .filter(|&s| counts[..s].iter().sum::<usize>() > 0 && counts[s..].iter().sum::<usize>() > 0)
+        .min_by(|&s, &t| cost(&boxes, &counts, s).total_cmp(&cost(&boxes, &counts, t)));
+    let Some(best) = best else { return items.len() / 2 };
+    items.sort_by_key(|i| bin(&i.bounds) >= best);
+    items.iter().take_while(|i| bin(&i.bounds) < best).count()
+}
+
+fn cost(boxes: &[Option<Aabb>; BINS], counts: &[usize; BINS], at: usize) -> f64 {
+    let half = |range: std::ops::Range<usize>| {
+        let n: usize = counts[range.clone()].iter().sum();
+        let bounds = boxes[range].iter().flatten().copied().reduce(Aabb::union);
+        bounds.map_or(0.0, |b| {
+            let e = b.extent().map(|c| c as f64);
+            n as f64 * (e[0] * e[1] + e[1] * e[2] + e[2] * e[0])
+        })
+    };
+    half(0..at) + half(at..BINS)
+}

@@ -1,0 +1,536 @@
+//! Stage C: the witness-driven subtraction of blockers from the lines between two gates.
+//!
+//! Depth first over Plücker cones (`docs/notes/search.md`): sample real lines of the cone; if one
+//! is free, the gates see each other; otherwise subtract the occluder that blocks most of them.
+//! A cone wholly inside a blocker, or without real lines, is done. When the stack is empty, all
+//! lines are blocked, and the tree of splits is the proof. After [MAM05] (split only real parts)
+//! and [Nir02] (sampling for blockers); differs in being exact and in keeping a certificate.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use antumbra_lines::{
+    Cone, ConeError, Gate, Halfspace, PluckerSpace, RealLines, Split, real_lines, start_halfspaces,
+};
+use antumbra_scene::PolygonId;
+
+use crate::blocker::{BlockerCone, RowName, blocker_cones};
+use crate::caster::{Caster, Segment};
+use crate::line::{Between, FineLine, FinePoint, Meeting, obstacle};
+use crate::proof::{Node, Tree};
+use crate::random::Random;
+use crate::sample::Sampler;
+
+/// One question: is a line free from one gate to another?
+pub(crate) struct Question<'a> {
+    pub caster: &'a Caster<'a>,
+    pub from: &'a Gate,
+    pub to: &'a Gate,
+    /// Whether occluders in the source's plane block.
+    pub source_plane_blocks: bool,
+    /// Polygons that take no part.
+    pub absent: &'a Range<u32>,
+    /// Whether an answer *open* must carry an exactly verified line.
+    pub exact_witness: bool,
+}
+
+/// The answer of the search.
+#[derive(Clone, Debug)]
+pub(crate) enum Answer {
+    /// No line: the gates do not face each other.
+    NoLines,
+    /// All lines are blocked.
+    Hidden(Tree),
+    /// A free line; verified exactly if that was asked for.
+    Open(FinePoint, FinePoint),
+    /// Not decided; the reason is counted.
+    Undecided(Undecided),
+}
+
+/// Why a search ended without an answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Undecided {
+    /// The budget of splits is used up.
+    Budget,
+    /// Real lines exist but none was found in doubles, or cones grew too complex.
+    Thin,
+}
+
+/// Work counters, the same on every run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Searches started.
+    pub searches: u64,
+    /// Splits of Plücker cones.
+    pub splits: u64,
+    /// Leaves of finished proofs.
+    pub leaves: u64,
+    /// Sampled lines.
+    pub samples: u64,
+    /// Signs that doubles could not decide.
+    pub exact_signs: u64,
+    /// Full decisions about real lines.
+    pub real_decisions: u64,
+    /// Questions left undecided by a budget.
+    pub over_budget: u64,
+    /// Questions left undecided because a cone was too thin or too complex.
+    pub thin: u64,
+}
+
+/// Memory and memory of success that is kept from question to question.
+pub(crate) struct Searcher {
+    space: PluckerSpace,
+    /// Occluders that blocked something lately, most recent first.
+    recent: Vec<PolygonId>,
+    pub work: Work,
+}
+
+/// How many recent blockers are tried before the scene is asked.
+const RECENT: usize = 12;
+/// Lines sampled in a cone.
+const SAMPLES: usize = 12;
+
+enum Slot {
+    Open,
+    Done(Node),
+    Split {
+        node: Node,
+        inside: usize,
+        outside: usize,
+    },
+}
+
+struct Frame<'q> {
+    question: &'q Question<'q>,
+    cones: HashMap<PolygonId, Vec<BlockerCone>>,
+}
+
+impl Searcher {
+    pub(crate) fn new() -> Self {
+        Self {
+            space: PluckerSpace::new(),
+            recent: Vec::new(),
+            work: Work::default(),
+        }
+    }
+
+    /// Decides a question with at most `budget` splits.
+    pub(crate) fn decide(
+        &mut self,
+        question: &Question<'_>,
+        rng: &mut Random,
+        budget: u64,
+    ) -> Answer {
+        self.work.searches += 1;
+        self.space.clear();
+        let exact_before = self.space.exact_signs();
+        let answer = self.run(question, rng, budget);
+        self.work.exact_signs += self.space.exact_signs() - exact_before;
+        answer
+    }
+
+    fn run(&mut self, question: &Question<'_>, rng: &mut Random, budget: u64) -> Answer {
+        let start = match start_halfspaces(&mut self.space, question.from, question.to) {
+            Ok(start) => start,
+            Err(ConeError::Flat) => return Answer::NoLines,
+            Err(_) => return Answer::Undecided(Undecided::Thin),
+        };
+        let mut frame = Frame { question, cones: HashMap::new() };
+        let mut slots = vec![Slot::Open];
+        let mut stack = Vec::new();
+        match start.chord {
+            None => match Cone::new(&mut self.space, &start.halfspaces) {
+                Ok(cone) => stack.push((cone, 0_usize)),
+                Err(ConeError::Flat) => return Answer::NoLines,
+                Err(_) => return Answer::Undecided(Undecided::Thin),
+            },
+            Some(chord) => {
+                let row = RowName::Chord { from: chord.from, to: chord.to };
+                let node = Node::Split { row, negative: false };
+                slots[0] = Slot::Split { node, inside: 1, outside: 2 };
+                for (slot, h) in [(1, chord.halfspace), (2, chord.halfspace.opposite())] {
+                    let mut halfspaces = start.halfspaces.clone();
+                    halfspaces.push(h);
+                    match Cone::new(&mut self.space, &halfspaces) {
+                        Ok(cone) => {
+                            slots.push(Slot::Open);
+                            stack.push((cone, slot));
+                        }
+                        Err(ConeError::Flat) => slots.push(Slot::Done(Node::Imaginary)),
+                        Err(_) => return Answer::Undecided(Undecided::Thin),
+                    }
+                }
+            }
+        }
+        let limit = self.work.splits.saturating_add(budget);
+        while let Some((cone, slot)) = stack.pop() {
+            match self.treat(&mut frame, cone, slot, &mut slots, &mut stack, rng) {
+                Ok(()) => {}
+                Err(answer) => return answer,
+            }
+            if self.work.splits > limit {
+                return Answer::Undecided(Undecided::Budget);
+            }
+        }
+        let tree = preorder(&slots);
+        self.work.leaves += tree
+            .nodes
+            .iter()
+            .filter(|n| !matches!(n, Node::Split { .. }))
+            .count() as u64;
+        Answer::Hidden(tree)
+    }
+
+    /// Treats one cone: fills its slot, or finds a free line.
+    fn treat(
+        &mut self,
+        frame: &mut Frame<'_>,
+        cone: Cone,
+        slot: usize,
+        slots: &mut Vec<Slot>,
+        stack: &mut Vec<(Cone, usize)>,
+        rng: &mut Random,
+    ) -> Result<(), Answer> {
+        // Most parts outside of a blocker hold no real line, and the signs of a few hundred pairs
+        // of vertices tell: cheaper than to sample in vain.
+        self.work.real_decisions += 1;
+        if real_lines(&mut self.space, &cone) == RealLines::None {
+            slots[slot] = Slot::Done(Node::Imaginary);
+            return Ok(());
+        }
+        let mut sampler = Sampler::new(&self.space, &cone);
+        let mut lines = Vec::with_capacity(SAMPLES);
+        sampler.lines(rng, SAMPLES, &mut lines);
+        if lines.len() < SAMPLES / 2 {
+            sampler.persist(rng, SAMPLES / 2, &mut lines);
+        }
+        if lines.is_empty() {
+            return Err(Answer::Undecided(Undecided::Thin));
+        }
+        self.work.samples += lines.len() as u64;
+        let blocker = self.choose(frame, &cone, &lines)?;
+        self.subtract(frame, cone, slot, slots, stack, blocker)
+    }
+
+    /// The occluder that blocks most sampled lines, with the direction in which it is crossed; or
+    /// a free line as an answer.
+    fn choose(
+        &mut self,
+        frame: &mut Frame<'_>,
+        cone: &Cone,
+        lines: &[([f64; 3], [f64; 3])],
+    ) -> Result<(PolygonId, bool), Answer> {
+        let question = frame.question;
+        let mut tally = Tally::default();
+        let segments: Vec<Segment> = lines
+            .iter()
+            .filter_map(|(d, m)| between_gates(d, m, question))
+            .collect();
+        let mut blocked = vec![false; segments.len()];
+        for &id in &self.recent {
+            for (i, s) in segments.iter().enumerate() {
+                if let Some(negative) = blocks(question, id, s) {
+                    tally.add(id, negative);
+                    blocked[i] = true;
+                }
+            }
+        }
+        if let Some((id, negative, count)) = tally.best(&[])
+            && count as usize == segments.len()
+        {
+            return Ok((id, negative));
+        }
+        let mut refused: Vec<(PolygonId, bool)> = Vec::new();
+        for (i, s) in segments.iter().enumerate() {
+            if blocked[i] {
+                continue;
+            }
+            let mut any = false;
+            question.caster.visit(
+                s,
+                (-1e-9, 1.0 + 1e-9),
+                crate::caster::SAMPLING_SLACK,
+                |items, _, _| {
+                    for &id in items {
+                        if let Some(negative) = blocks(question, id, s) {
+                            any = true;
+                            // Once a line: a straddling polygon stands in several leaves.
+                            tally.add_once(id, negative, i as u32);
+                        }
+                    }
+                    std::ops::ControlFlow::Continue(())
+                },
+            );
+            if any {
+                continue;
+            }
+            let (u, v) = (FinePoint::round(s.from), FinePoint::round(s.at(1.0)));
+            if !question.exact_witness {
+                return Err(Answer::Open(u, v));
+            }
+            match verify(question, u, v) {
+                Ok(()) => return Err(Answer::Open(u, v)),
+                Err(Some((id, negative))) => tally.add(id, negative),
+                Err(None) => {}
+            }
+        }
+        loop {
+            let Some((id, negative, _)) = tally.best(&refused) else {
+                return Err(Answer::Undecided(Undecided::Thin));
+            };
+            if self.progresses(frame, cone, id, negative) {
+                return Ok((id, negative));
+            }
+            refused.push((id, negative));
+        }
+    }
+
+    /// Whether an occluder's blocker cone meets the interior of a cone.
+    fn progresses(
+        &mut self,
+        frame: &mut Frame<'_>,
+        cone: &Cone,
+        id: PolygonId,
+        negative: bool,
+    ) -> bool {
+        let Some(rows) = self.rows(frame, id, negative) else {
+            return false;
+        };
+        rows.iter().all(|(h, _)| {
+            cone.position(&mut self.space, *h) != Some(antumbra_kernel::Sign::Negative)
+        })
+    }
+
+    fn rows(
+        &mut self,
+        frame: &mut Frame<'_>,
+        id: PolygonId,
+        negative: bool,
+    ) -> Option<Vec<(Halfspace, RowName)>> {
+        let question = frame.question;
+        let cones = frame.cones.entry(id).or_insert_with(|| {
+            let polygon = question.caster.scene().polygon(id);
+            blocker_cones(
+                &mut self.space,
+                &polygon,
+                question.from,
+                question.source_plane_blocks,
+                question.to,
+            )
+        });
+        cones
+            .iter()
+            .find(|c| c.negative == negative)
+            .map(|c| c.rows.clone())
+    }
+
+    /// Cuts a blocker out of a cone: the parts outside go to the stack, the part inside is done.
+    fn subtract(
+        &mut self,
+        frame: &mut Frame<'_>,
+        cone: Cone,
+        slot: usize,
+        slots: &mut Vec<Slot>,
+        stack: &mut Vec<(Cone, usize)>,
+        (id, negative): (PolygonId, bool),
+    ) -> Result<(), Answer> {
+        self.remember(id);
+        let rows = self.rows(frame, id, negative).unwrap_or_default();
+        // Small parts outside first: what is left inside then meets fewer rows.
+        let mut order: Vec<(usize, usize)> = Vec::with_capacity(rows.len());
+        for (i, (h, _)) in rows.iter().enumerate() {
+            let (_, outside) = cone.count_outside(&mut self.space, *h);
+            if outside > 0 {
+                order.push((outside, i));
+            }
+        }
+        order.sort_unstable();
+        let mut cone = cone;
+        let mut slot = slot;
+        for (_, i) in order {
+            let (h, name) = rows[i];
+            self.work.splits += 1;
+            match cone.split(&mut self.space, h) {
+                Ok(Split::Inside) => {}
+                Ok(Split::Both(inside, outside)) => {
+                    let (a, b) = (slots.len(), slots.len() + 1);
+                    slots.push(Slot::Open);
+                    slots.push(Slot::Open);
+                    let node = Node::Split {
+                        row: name,
+                        negative,
+                    };
+                    slots[slot] = Slot::Split {
+                        node,
+                        inside: a,
+                        outside: b,
+                    };
+                    stack.push((outside, b));
+                    cone = inside;
+                    slot = a;
+                }
+                Ok(Split::Outside) => {
+                    // Nothing is left inside: the earlier cuts served no purpose but are sound.
+                    stack.push((cone, slot));
+                    return Ok(());
+                }
+                Err(_) => return Err(Answer::Undecided(Undecided::Thin)),
+            }
+        }
+        slots[slot] = Slot::Done(Node::Blocked {
+            polygon: id,
+            negative,
+        });
+        Ok(())
+    }
+
+    fn remember(&mut self, id: PolygonId) {
+        if let Some(i) = self.recent.iter().position(|&r| r == id) {
+            self.recent.remove(i);
+        }
+        self.recent.insert(0, id);
+        self.recent.truncate(RECENT);
+    }
+
+    /// The occluders that blocked something lately, most recent first.
+    pub(crate) fn recent(&self) -> &[PolygonId] {
+        &self.recent
+    }
+}
+
+/// Votes of sampled lines for occluders.
+#[derive(Default)]
+struct Tally {
+    votes: Vec<(PolygonId, bool, u32, u32)>,
+}
+
+impl Tally {
+    fn add(&mut self, id: PolygonId, negative: bool) {
+        self.add_once(id, negative, u32::MAX);
+    }
+
+    fn add_once(&mut self, id: PolygonId, negative: bool, line: u32) {
+        match self.votes.iter_mut().find(|v| v.0 == id && v.1 == negative) {
+            Some(v) if line != u32::MAX && v.3 == line => {}
+            Some(v) => {
+                v.2 += 1;
+                v.3 = line;
+            }
+            None => self.votes.push((id, negative, 1, line)),
+        }
+    }
+
+    fn best(&self, refused: &[(PolygonId, bool)]) -> Option<(PolygonId, bool, u32)> {
+        self.votes
+            .iter()
+            .filter(|v| !refused.contains(&(v.0, v.1)))
+            .max_by_key(|v| (v.2, std::cmp::Reverse(v.0)))
+            .map(|v| (v.0, v.1, v.2))
+    }
+}
+
+/// The part of a sampled line between the two gates' planes, in doubles.
+fn between_gates(d: &[f64; 3], m: &[f64; 3], question: &Question<'_>) -> Option<Segment> {
+    let p = meet_plane(d, m, question.from)?;
+    let q = meet_plane(d, m, question.to)?;
+    let ok = p
+        .iter()
+        .chain(&q)
+        .all(|c| c.is_finite() && c.abs() < f64::from(antumbra_kernel::LIMIT));
+    ok.then(|| Segment::new(p, q))
+}
+
+fn meet_plane(d: &[f64; 3], m: &[f64; 3], gate: &Gate) -> Option<[f64; 3]> {
+    let n = gate.plane.normal.map(|c| c as f64);
+    let along = crate::caster::dot(n, *d);
+    if along == 0.0 {
+        return None;
+    }
+    let c = gate.plane.offset as f64;
+    let nxm = crate::caster::cross(n, *m);
+    let mut p: [f64; 3] = std::array::from_fn(|k| (c * d[k] + nxm[k]) / along);
+    // On an axis-parallel plane the coordinate is known exactly.
+    for k in 0..3 {
+        if n[(k + 1) % 3] == 0.0 && n[(k + 2) % 3] == 0.0 {
+            p[k] = f64::from(gate.corners[0].to_array()[k]);
+        }
+    }
+    Some(p)
+}
+
+/// Whether an occluder blocks a segment between the gates, in doubles, and whether it is crossed
+/// against its normal.
+fn blocks(question: &Question<'_>, id: PolygonId, s: &Segment) -> Option<bool> {
+    let caster = question.caster;
+    if !caster.occludes(id) || question.absent.contains(&id.0) {
+        return None;
+    }
+    let t = caster.crossing(id, s)?;
+    const END: f64 = 1e-9;
+    if !(-END..=1.0 + END).contains(&t) {
+        return None;
+    }
+    if t < END || t > 1.0 - END {
+        let polygon = caster.scene().polygon(id);
+        if t < END {
+            let inside = crate::line::lies_in(&polygon, &question.from.plane);
+            if inside && !question.source_plane_blocks {
+                return None;
+            }
+        }
+        if t > 1.0 - END && crate::line::lies_in(&polygon, &question.to.plane) {
+            return None;
+        }
+    }
+    Some(crate::caster::dot(caster.normal(id), s.step) < 0.0)
+}
+
+/// Exactly: the line crosses both gates inside and nothing in between. On failure the obstacle.
+fn verify(
+    question: &Question<'_>,
+    u: FinePoint,
+    v: FinePoint,
+) -> Result<(), Option<(PolygonId, bool)>> {
+    let line = FineLine::new(u, v).ok_or(None)?;
+    for gate in [question.from, question.to] {
+        match line.meeting(&gate.corners, &gate.plane) {
+            Meeting::Cross(s) if s.is_positive() => {}
+            _ => return Err(None),
+        }
+    }
+    let between = Between {
+        source: &question.from.plane,
+        source_plane_blocks: question.source_plane_blocks,
+        target: &question.to.plane,
+        absent: question.absent,
+    };
+    match obstacle(question.caster, &line, &between) {
+        None => Ok(()),
+        Some(id) => {
+            let negative =
+                crate::caster::dot(question.caster.normal(id), line.segment().step) < 0.0;
+            Err(Some((id, negative)))
+        }
+    }
+}
+
+fn preorder(slots: &[Slot]) -> Tree {
+    let mut nodes = Vec::with_capacity(slots.len());
+    let mut stack = vec![0_usize];
+    while let Some(i) = stack.pop() {
+        match &slots[i] {
+            Slot::Open => {}
+            Slot::Done(node) => nodes.push(*node),
+            Slot::Split {
+                node,
+                inside,
+                outside,
+            } => {
+                nodes.push(*node);
+                stack.push(*outside);
+                stack.push(*inside);
+            }
+        }
+    }
+    Tree { nodes }
+}

@@ -1,0 +1,261 @@
+//! What each chore does, step by step.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use crate::counts::Counts;
+use crate::runner::{Failure, cargo, root, run, run_tests, title};
+
+/// How much `cargo xtask test` runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Depth {
+    /// What every change must pass.
+    Short,
+    /// The slow tests too.
+    Long,
+}
+
+/// Everything a change must pass; the last line printed is the sum of all tests.
+pub(crate) fn test(depth: Depth) -> Result<(), Failure> {
+    let mut total = Counts::default();
+    let outcome = test_steps(depth, &mut total);
+    match outcome {
+        Ok(()) => {
+            println!("\nall steps passed\n{total}");
+            Ok(())
+        }
+        Err(failure) => Err(Failure {
+            counts: Some(total),
+            ..failure
+        }),
+    }
+}
+
+fn test_steps(depth: Depth, total: &mut Counts) -> Result<(), Failure> {
+    // Cheap checks first; doctests last of the tests, since they link one binary each.
+    format()?;
+    tidy()?;
+    clippy()?;
+    run_tests("tests", &mut cargo(&SHORT_TESTS), total)?;
+    run_tests("doctests", &mut cargo(&DOCTESTS), total)?;
+    docs()?;
+    fuzz_targets(depth)?;
+    if depth == Depth::Long {
+        run_tests(
+            "long tests",
+            cargo(&LONG_TESTS).env("ANTUMBRA_LONG", "1"),
+            total,
+        )?;
+    }
+    Ok(())
+}
+
+/// `--show-output` lets us see which passing tests skipped themselves.
+const SHORT_TESTS: [&str; 9] = [
+    "test",
+    "--workspace",
+    "--lib",
+    "--bins",
+    "--tests",
+    "--examples",
+    "--no-fail-fast",
+    "--",
+    "--show-output",
+];
+const DOCTESTS: [&str; 5] = ["test", "--workspace", "--doc", "--", "--show-output"];
+const LONG_TESTS: [&str; 10] = [
+    "test",
+    "--release",
+    "--workspace",
+    "--lib",
+    "--bins",
+    "--tests",
+    "--no-fail-fast",
+    "--",
+    "--include-ignored",
+    "--show-output",
+];
+
+/// Format, clippy and tidy.
+pub(crate) fn lint() -> Result<(), Failure> {
+    format()?;
+    tidy()?;
+    clippy()
+}
+
+fn format() -> Result<(), Failure> {
+    run("format", &mut cargo(&["fmt", "--all", "--check"]))
+}
+
+fn clippy() -> Result<(), Failure> {
+    let arguments = [
+        "clippy",
+        "--workspace",
+        "--all-targets",
+        "--",
+        "-D",
+        "warnings",
+    ];
+    run("clippy", &mut cargo(&arguments))
+}
+
+fn docs() -> Result<(), Failure> {
+    let mut command = cargo(&["doc", "--workspace", "--no-deps"]);
+    run("docs", command.env("RUSTDOCFLAGS", "-D warnings"))
+}
+
+/// The rules of the house.
+pub(crate) fn tidy() -> Result<(), Failure> {
+    title("tidy");
+    let report = crate::tidy::check(&root());
+    for warning in &report.warnings {
+        println!("    warning: {warning}");
+    }
+    for error in &report.errors {
+        println!("    {error}");
+    }
+    if report.errors.is_empty() {
+        println!("    {} files looked at", report.files);
+        return Ok(());
+    }
+    let why = format!("{} rules broken (see above)", report.errors.len());
+    Err(Failure {
+        step: "tidy".to_owned(),
+        why,
+        counts: None,
+    })
+}
+
+/// All benchmarks.
+pub(crate) fn bench(arguments: &[&str]) -> Result<(), Failure> {
+    run(
+        "benchmarks",
+        cargo(&["bench", "--workspace"]).args(arguments),
+    )
+}
+
+/// Runs every `figure_*` example of every crate, in release mode, from the root.
+pub(crate) fn figures() -> Result<(), Failure> {
+    for (package, example) in figure_examples(&root()) {
+        let arguments = [
+            "run",
+            "--release",
+            "--package",
+            &package,
+            "--example",
+            &example,
+        ];
+        run(&format!("figure {example}"), &mut cargo(&arguments))?;
+    }
+    Ok(())
+}
+
+fn figure_examples(root: &Path) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    for krate in names_in(&root.join("crates")) {
+        for file in names_in(&root.join("crates").join(&krate).join("examples")) {
+            let stem = file.trim_end_matches(".rs");
+            if stem.starts_with("figure_") {
+                found.push((krate.clone(), stem.to_owned()));
+            }
+        }
+    }
+    found
+}
+
+/// The sorted names in a directory; none if it cannot be read.
+fn names_in(directory: &Path) -> Vec<String> {
+    let Ok(entries) = std::fs::read_dir(directory) else {
+        return Vec::new();
+    };
+    let mut names: Vec<String> = entries
+        .flatten()
+        .map(|e| e.file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+/// Instrumentation for libFuzzer with a stable compiler and no sanitizer.
+const FUZZ_FLAGS: &str = "--cfg fuzzing -Cpasses=sancov-module \
+    -Cllvm-args=-sanitizer-coverage-level=4 -Cllvm-args=-sanitizer-coverage-inline-8bit-counters \
+    -Cllvm-args=-sanitizer-coverage-pc-table";
+
+/// Compiles the fuzz targets; runs each for a few seconds in a long run.
+///
+/// libFuzzer is C++, so a machine with nothing but Rust skips this step.
+fn fuzz_targets(depth: Depth) -> Result<(), Failure> {
+    let manifest = root().join("fuzz/Cargo.toml");
+    if !manifest.exists() {
+        return Ok(());
+    }
+    if !has_cpp_compiler() {
+        title("fuzz targets");
+        println!("    skipped: no C++ compiler (c++) on this machine, and libFuzzer needs one");
+        return Ok(());
+    }
+    let manifest = manifest.to_string_lossy().into_owned();
+    if depth == Depth::Short {
+        let arguments = ["check", "--bins", "--manifest-path", &manifest];
+        return run(
+            "fuzz targets compile",
+            cargo(&arguments).env("RUSTFLAGS", "--cfg fuzzing"),
+        );
+    }
+    let host = host_triple();
+    let build = [
+        "build",
+        "--release",
+        "--bins",
+        "--manifest-path",
+        &manifest,
+        "--target",
+        &host,
+    ];
+    run(
+        "fuzz targets compile",
+        cargo(&build).env("RUSTFLAGS", FUZZ_FLAGS),
+    )?;
+    for file in names_in(&root().join("fuzz/fuzz_targets")) {
+        let target = file.trim_end_matches(".rs");
+        let arguments = [
+            "run",
+            "--release",
+            "--manifest-path",
+            &manifest,
+            "--target",
+            &host,
+            "--bin",
+            target,
+            "--",
+            "-max_total_time=20",
+        ];
+        run(
+            &format!("fuzz {target}"),
+            cargo(&arguments).env("RUSTFLAGS", FUZZ_FLAGS),
+        )?;
+    }
+    Ok(())
+}
+
+fn has_cpp_compiler() -> bool {
+    let compiler = std::env::var_os("CXX").unwrap_or_else(|| "c++".into());
+    let mut command = Command::new(compiler);
+    command
+        .arg("--version")
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
+    command.status().is_ok_and(|s| s.success())
+}
+
+/// Given explicitly, so that the instrumentation flags do not reach build scripts.
+fn host_triple() -> String {
+    let output = Command::new("rustc")
+        .args(["--version", "--verbose"])
+        .output();
+    let text = output
+        .map(|o| String::from_utf8_lossy(&o.stdout).into_owned())
+        .unwrap_or_default();
+    let host = text.lines().find_map(|l| l.strip_prefix("host: "));
+    host.unwrap_or("x86_64-unknown-linux-gnu").to_owned()
+}
