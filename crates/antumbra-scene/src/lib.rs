@@ -13,7 +13,9 @@ pub mod synth;
 mod target_tree;
 
 pub use builder::{BuildError, SceneBuilder};
-pub use cells::{CellKind, ViewCell};
+pub use cells::{
+    CellError, CellKind, CellSpec, CellSpecError, MAX_CELLS, NamedBox, ViewCell, make_cells,
+};
 pub use input::{Faces, ObjectInput, OccluderPolicy, PartInput, SceneInput};
 pub use kd::{KdBox, KdHeuristic, KdNode, KdTree, SeenPolygons};
 pub use meet::{BoxContact, box_contact, polygons_touch};
