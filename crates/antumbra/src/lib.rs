@@ -1,1 +1,4 @@
 //! Placeholder.
+pub mod pair;
+pub mod ray;
+pub mod region;
