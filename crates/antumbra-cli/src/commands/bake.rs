@@ -45,6 +45,9 @@ pub(crate) struct BakeArgs {
     /// Keep no certificates of what is hidden
     #[arg(long)]
     no_proofs: bool,
+    /// List every object that had to be repaired, not only the first ones
+    #[arg(long)]
+    report: bool,
     /// Go on with an interrupted bake
     #[arg(long)]
     resume: bool,
@@ -74,7 +77,7 @@ pub(crate) fn run(args: &BakeArgs, global: &Global) -> Result<(), Failure> {
     let (spec, cells_box) = cells(&args.cells)?;
     let loaded = load(&args.scene, global, cells_box)?;
     if !loaded.report.repairs.is_empty() {
-        output.note(loaded.report.to_string().trim_end());
+        output.note(&repairs(&loaded.report.to_string(), args.report));
     }
     let scene = &loaded.scene;
     let cells = make_cells(scene, &spec).map_err(|e| Failure::Content(e.to_string()))?;
@@ -129,6 +132,23 @@ pub(crate) fn run(args: &BakeArgs, global: &Global) -> Result<(), Failure> {
         baked.bake_time.as_secs_f64(),
     );
     output.result(&result, &text)
+}
+
+/// The summary of a report and its first objects, or all.
+fn repairs(report: &str, all: bool) -> String {
+    const SHORT: usize = 6;
+    let lines: Vec<&str> = report.trim_end().lines().collect();
+    let shown = if all {
+        lines.len()
+    } else {
+        lines.len().min(SHORT)
+    };
+    let mut text = lines[..shown].join("\n");
+    if shown < lines.len() {
+        let more = lines.len() - shown;
+        text += &format!("\n... and {more} more repaired objects; list all with --report");
+    }
+    text
 }
 
 /// The scene's name with `.pvs`, in the current folder.

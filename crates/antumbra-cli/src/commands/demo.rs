@@ -29,7 +29,7 @@ pub(crate) struct DemoArgs {
     output: PathBuf,
 }
 
-/// The cell that is drawn: a room with an open door.
+/// The cell that is drawn: a part of the corridor.
 const SHOWN: &str = "corridor-1";
 
 /// Bakes, checks, draws, and says where everything is.

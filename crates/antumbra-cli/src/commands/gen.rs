@@ -83,6 +83,7 @@ struct Layers {
 
 /// The kinds of office.
 #[derive(Clone, Copy, Debug, ValueEnum)]
+#[allow(clippy::enum_variant_names, reason = "the names of the options")]
 enum Office {
     /// 139 polygons: one desk
     Office1,

@@ -6,6 +6,7 @@
 mod camera;
 mod color;
 mod encode;
+mod facing;
 mod perspective;
 mod plan;
 mod raster;

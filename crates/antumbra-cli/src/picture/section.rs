@@ -1,6 +1,7 @@
 //! The cut: everything above the cell is taken away if there is a roof above it.
 
-use super::vector::{V3, area_vector, clip, dot};
+use super::facing::facing;
+use super::vector::{V3, clip};
 use super::{Face, Shown, Subject};
 
 /// A face after the cut.
@@ -30,19 +31,23 @@ pub(super) fn open(subject: &Subject) -> Remains {
         // A hair above the cell's top, so that faces in that plane go away, too.
         max[2] + (max[2] - min[2]).max(1e-6) * 1e-3
     });
-    let solid = solids(subject);
+    let facing = facing(subject);
     let mut remains = Remains {
         pieces: Vec::new(),
         cut,
         lines: Vec::new(),
     };
-    for face in &subject.faces {
-        let solid = solid[face.object as usize];
+    for (face, reversed) in subject.faces.iter().zip(&facing.reversed) {
+        let solid = facing.solid[face.object as usize];
         let source = subject.shown[face.object as usize] == Shown::Source;
         let mut corners = face.corners.clone();
+        if *reversed {
+            corners.reverse();
+        }
         if let (Some(z), false) = (cut, source) {
             corners = clip(&corners, |p| z - p[2]);
-            let on_cut: Vec<V3> = corners.iter().copied().filter(|p| p[2] == z).collect();
+            let is_on_cut = |p: &V3| (p[2] - z).abs() <= 1e-9 * (1.0 + z.abs());
+            let on_cut: Vec<V3> = corners.iter().copied().filter(is_on_cut).collect();
             let from_above = face.corners.iter().any(|p| p[2] > z);
             if let ([a, b], true) = (&on_cut[..], from_above) {
                 remains.lines.push((face.object, solid, [*a, *b]));
@@ -97,31 +102,6 @@ fn encloses(corners: &[V3], x: f64, y: f64) -> bool {
     inside
 }
 
-/// For each object, whether its faces look like a closed surface: their area vectors cancel and
-/// they enclose a positive volume.
-fn solids(subject: &Subject) -> Vec<bool> {
-    #[derive(Clone, Default)]
-    struct Sum {
-        area: f64,
-        vector: V3,
-        volume: f64,
-        anchor: Option<V3>,
-    }
-    let mut sums = vec![Sum::default(); subject.shown.len()];
-    for face in &subject.faces {
-        let sum = &mut sums[face.object as usize];
-        let n = area_vector(&face.corners);
-        let anchor = *sum.anchor.get_or_insert(face.corners[0]);
-        sum.area += dot(n, n).sqrt();
-        sum.volume += dot(n, super::vector::sub(face.corners[0], anchor));
-        sum.vector = std::array::from_fn(|k| sum.vector[k] + n[k]);
-    }
-    let closed = |s: &Sum| s.vector.iter().all(|v| v.abs() <= 1e-4 * s.area);
-    sums.iter()
-        .map(|s| closed(s) && s.volume > 1e-6 * s.area.powf(1.5))
-        .collect()
-}
-
 /// Chains lines into closed loops; lines that fit nowhere are left out.
 pub(super) fn loops(lines: &[[V3; 2]]) -> Vec<Vec<[f64; 2]>> {
     let key = |p: &V3| [(p[0] * 1e4).round() as i64, (p[1] * 1e4).round() as i64];
@@ -157,12 +137,12 @@ pub(super) fn loops(lines: &[[V3; 2]]) -> Vec<Vec<[f64; 2]>> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::super::{Face, Shown, Subject};
     use super::{loops, open};
 
     /// A box with outward faces.
-    fn block(min: [f64; 3], max: [f64; 3], object: u32) -> Vec<Face> {
+    pub(in super::super) fn block(min: [f64; 3], max: [f64; 3], object: u32) -> Vec<Face> {
         let p = |i: usize| std::array::from_fn(|k| if i >> k & 1 == 1 { max[k] } else { min[k] });
         [
             [0, 4, 6, 2],

@@ -213,7 +213,7 @@ const SINGLE: [(Piece, f64, f64, f64); 9] = [
 ];
 const DOUBLE: [(Piece, f64, f64, f64); 9] = [
     (Table, -1.1, 3.0, 270.0),
-    (Chair, -1.0, 3.0, 0.0),
+    (Chair, -0.45, 3.0, 90.0),
     (Table, 1.1, 3.0, 90.0),
     (Chair, 0.45, 3.0, 270.0),
     (Monitor, -1.3, 3.1, 270.0),
