@@ -36,14 +36,14 @@ fn test_steps(depth: Depth, total: &mut Counts) -> Result<(), Failure> {
     format()?;
     tidy()?;
     clippy()?;
-    run_tests("tests", &mut cargo(&SHORT_TESTS), total)?;
-    run_tests("doctests", &mut cargo(&DOCTESTS), total)?;
+    run_tests("tests", &mut cargo(SHORT_TESTS), total)?;
+    run_tests("doctests", &mut cargo(DOCTESTS), total)?;
     docs()?;
     fuzz_targets(depth)?;
     if depth == Depth::Long {
         run_tests(
             "long tests",
-            cargo(&LONG_TESTS).env("ANTUMBRA_LONG", "1"),
+            cargo(LONG_TESTS).env("ANTUMBRA_LONG", "1"),
             total,
         )?;
     }
@@ -51,7 +51,7 @@ fn test_steps(depth: Depth, total: &mut Counts) -> Result<(), Failure> {
 }
 
 /// `--show-output` lets us see which passing tests skipped themselves.
-const SHORT_TESTS: [&str; 9] = [
+const SHORT_TESTS: &[&str] = &[
     "test",
     "--workspace",
     "--lib",
@@ -62,8 +62,8 @@ const SHORT_TESTS: [&str; 9] = [
     "--",
     "--show-output",
 ];
-const DOCTESTS: [&str; 5] = ["test", "--workspace", "--doc", "--", "--show-output"];
-const LONG_TESTS: [&str; 10] = [
+const DOCTESTS: &[&str] = &["test", "--workspace", "--doc", "--", "--show-output"];
+const LONG_TESTS: &[&str] = &[
     "test",
     "--release",
     "--workspace",

@@ -23,9 +23,11 @@ impl fmt::Display for Failure {
     }
 }
 
-/// The root of the workspace, known from where this crate was compiled.
+/// The root of the workspace: what `cargo run` says, since the checkout may have moved after this
+/// crate was compiled; else where it was compiled.
 pub(crate) fn root() -> PathBuf {
-    let here = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    let here = std::env::var_os("CARGO_MANIFEST_DIR")
+        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from);
     here.parent().map(PathBuf::from).unwrap_or(here)
 }
 

@@ -3,6 +3,7 @@
 //! After [Bittner02, 8.4]: a line through u and v is the point `(d; m)` with `d = v - u` and
 //! `m = u x v`. The hyperplane of an edge has the row `(m; d)`, so that `row . point` is the side
 //! of two lines, and the Plücker quadric is `Q = d . m`.
+//! A float filter with its proved bound decides most sides; exact integers decide the rest.
 
 use crate::{I256, I512, Point, Sign};
 

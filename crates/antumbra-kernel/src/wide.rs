@@ -3,6 +3,7 @@
 //! Two's complement in `N` limbs of 64 bits, least significant first. Widths are proved per
 //! predicate (see the table in `docs/notes/arithmetic.md`), so the operations wrap silently in
 //! release builds and the callers' bounds guarantee that they never do.
+//! Conversion to a double feeds filters only.
 
 use crate::Sign;
 

@@ -5,6 +5,7 @@
 //! then at 2-faces tight on three pairwise skew lines; `docs/notes/real-lines.md` has the proof.
 //! Differs from [Teller92], which intersects edges only and misses cells whose real lines touch
 //! no edge.
+//! Float filters with proved bounds come first, exact integers decide where they cannot.
 
 use antumbra_kernel::Sign;
 use dashu_int::IBig;

@@ -74,7 +74,8 @@ fn the_start_polytope_holds_every_line_between_its_polygons() {
             Err(ConeError::Flat) => continue,
             Err(e) => panic!("{e}"),
         };
-        let cone = Cone::new(&mut space, &start.halfspaces).expect("a pair of polygons spans a cone");
+        let cone =
+            Cone::new(&mut space, &start.halfspaces).expect("a pair of polygons spans a cone");
         cone.sanity_check(&mut space)
             .expect("the start polytope is sound");
         assert_eq!(real_lines(&mut space, &cone), RealLines::Some);
@@ -141,7 +142,9 @@ fn splitting_keeps_the_cone_sound_and_loses_nothing() {
 fn real_lines_that_touch_no_edge_are_found() {
     let mut space = PluckerSpace::new();
     let (a, b) = (square(4000, -1000), square(4000, 1000));
-    let mut start = start_halfspaces(&mut space, &a, &b).expect("two squares").halfspaces;
+    let mut start = start_halfspaces(&mut space, &a, &b)
+        .expect("two squares")
+        .halfspaces;
     let turned = |(x, y): (i32, i32), z: i32| Point::new(-y, x, z);
     for (k, (x, y)) in [(30, 20), (500, 0), (-300, 400), (-200, -450)]
         .into_iter()

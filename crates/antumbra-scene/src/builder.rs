@@ -3,10 +3,12 @@
 //! Object by object, and each object by these steps: vertices go to the grid and equal positions
 //! become one ([`snap`]); faces become strictly convex planar patches ([`clean`]); the slits that
 //! snapping opened between an edge and the vertices beside it are closed ([`seal`]); patches that
-//! occur twice are dropped; coplanar neighbors are merged ([`merge`]). Nothing after the first
+//! occur twice are dropped; coplanar neighbors are merged ([`merge`]) and what others cover is
+//! dropped ([`cover`]). Nothing after the first
 //! step changes the set of points that the occluders cover, except that slits are closed.
 
 mod clean;
+mod cover;
 mod error;
 mod merge;
 mod near;
@@ -21,7 +23,7 @@ use rayon::prelude::*;
 pub use error::BuildError;
 
 use crate::input::{ObjectInput, OccluderPolicy, SceneInput};
-use crate::kd::{KdHeuristic, KdTree};
+use crate::kd::{KdHeuristic, KdTree, Shape};
 use crate::report::{BuildReport, ObjectRepairs, RepairCounts};
 use crate::scene::{Object, ObjectId, Scene};
 use clean::{Cleaned, Patch};
@@ -79,7 +81,7 @@ impl SceneBuilder {
         self
     }
 
-    /// Which parts block lines.
+    /// Which parts are occluders.
     #[must_use]
     pub fn policy(mut self, policy: OccluderPolicy) -> Self {
         self.policy = policy;
@@ -222,9 +224,8 @@ fn object_patches(
     let sealed = seal::seal(&welder.points, &mut patches);
     counts.inserted = sealed.vertices;
     counts.sealing = sealed.triangles;
-    let mut merged = merge::merge(&welder.points, patches);
-    // Layers that were cut differently may have become equal.
-    counts.duplicate += drop_duplicates(&mut merged);
+    let (merged, covered) = merge::merge(&welder.points, patches);
+    counts.covered = covered;
     (merged, counts)
 }
 
@@ -333,7 +334,14 @@ fn assemble(
             )
         })
         .collect();
-    let kd = KdTree::build(&boxes, heuristic);
+    let shape = |i: u32| {
+        let i = i as usize;
+        Some(Shape {
+            corners: &corners[first[i] as usize..first[i + 1] as usize],
+            plane: &planes[i],
+        })
+    };
+    let kd = KdTree::build(&boxes, shape, heuristic);
     let bounds = kd.bounds();
     Ok((
         Scene {

@@ -19,7 +19,7 @@ pub struct BuildReport {
     pub faces: usize,
     /// How many polygons the scene has.
     pub polygons: usize,
-    /// How many of them block lines.
+    /// How many of them are occluders.
     pub occluders: usize,
     /// The objects to which something happened beyond snapping and merging, by id.
     pub repairs: Vec<ObjectRepairs>,
@@ -43,6 +43,8 @@ pub struct RepairCounts {
     pub degenerate: usize,
     /// Faces that repeat another one of the object: dropped.
     pub duplicate: usize,
+    /// Polygons, after merging, that others of the object cover in the same plane: dropped.
+    pub covered: usize,
     /// Faces that are not planar or not convex on the grid: cut into triangles.
     pub triangulated: usize,
     /// Vertices within one grid step of an edge they do not belong to: inserted.
@@ -64,6 +66,7 @@ impl RepairCounts {
         Self {
             degenerate: self.degenerate + other.degenerate,
             duplicate: self.duplicate + other.duplicate,
+            covered: self.covered + other.covered,
             triangulated: self.triangulated + other.triangulated,
             inserted: self.inserted + other.inserted,
             sealing: self.sealing + other.sealing,

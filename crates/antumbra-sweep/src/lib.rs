@@ -2,20 +2,29 @@
 
 mod blocker;
 mod caster;
+mod check;
 mod cover;
 mod gates;
 mod line;
+mod pair;
+mod point;
 mod proof;
 mod random;
+mod ray;
 mod region;
 mod sample;
 mod search;
+mod size;
 mod verdict;
 
 pub use blocker::RowName;
 pub use caster::Caster;
-pub use line::{FINE_BITS, FinePoint};
+pub use check::{CheckReport, check_cell};
+pub use line::{FINE_BITS, FineLine, FinePoint};
+pub use pair::{PairResult, Surface, Verdict};
+pub use point::PointVerdict;
 pub use proof::{CellProof, Claim, GateProof, Node, ProofError, Reason, Target, Tree};
+pub use ray::{Hit, Trace};
 pub use region::{BakeOptions, Baker};
 pub use search::Work;
 pub use verdict::{Accuracy, CellResult, VisibleEntry, Witness};

@@ -139,6 +139,26 @@ impl Sampler {
         None
     }
 
+    /// The real lines on all segments between two rays: the extremal lines and some more.
+    pub(crate) fn extremal(&self) -> Vec<([f64; 3], [f64; 3])> {
+        let mut out = Vec::new();
+        for (i, v) in self.rays.iter().enumerate() {
+            let q = quadric(v);
+            if bounded(v, v).0.abs() <= bounded(v, v).1 {
+                out.push(([v[0], v[1], v[2]], [v[3], v[4], v[5]]));
+            }
+            for w in &self.rays[i + 1..] {
+                let r = quadric(w);
+                if q > 0.0 && r < 0.0 {
+                    out.push(root(v, w));
+                } else if q < 0.0 && r > 0.0 {
+                    out.push(root(w, v));
+                }
+            }
+        }
+        out
+    }
+
     fn draw(
         &mut self,
         rng: &mut Random,

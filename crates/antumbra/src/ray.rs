@@ -1,37 +1,49 @@
-//! Placeholder until rays are there.
-use antumbra_scene::{ObjectId, PolygonId, Scene};
+//! Visibility along one line: the first hit and the maximal free segments, exactly.
 
-/// Where a ray ends.
-#[derive(Clone, Copy, Debug)]
+use antumbra_kernel::SnapError;
+use antumbra_scene::{ObjectId, PolygonId, Scene};
+use antumbra_sweep::Caster;
+
+/// Where a segment first meets an occluder.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayHit {
     /// The object.
     pub object: ObjectId,
-    /// The polygon.
+    /// The polygon; of coincident ones the smallest.
     pub polygon: PolygonId,
-    /// Where.
+    /// Where, in scene units (rounded).
     pub at: [f64; 3],
 }
 
-/// The answer.
-#[derive(Clone, Debug)]
+/// What a segment meets.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct RayAnswer {
-    /// The first hit.
+    /// The first occluder on the way; touching counts.
     pub hit: Option<RayHit>,
-    /// Free stretches.
+    /// The maximal free parts, in scene units (rounded). None if both ends are one grid point.
     pub free: Vec<[[f64; 3]; 2]>,
 }
 
-/// Placeholder: nothing is hit.
+/// Follows the segment between two points in scene units, both snapped to the grid. The order
+/// along the segment is exact.
 ///
 /// # Errors
-/// Never.
-pub fn ray(
-    _scene: &Scene,
-    from: [f64; 3],
-    to: [f64; 3],
-) -> Result<RayAnswer, std::convert::Infallible> {
+/// If a point is not finite or off the scene's grid.
+pub fn ray(scene: &Scene, from: [f64; 3], to: [f64; 3]) -> Result<RayAnswer, SnapError> {
+    let grid = scene.grid();
+    let (u, v) = (grid.snap(from)?, grid.snap(to)?);
+    let Some(trace) = Caster::new(scene).trace(u, v) else {
+        return Ok(RayAnswer::default());
+    };
+    let (a, b) = (grid.to_scene(u), grid.to_scene(v));
+    let at = |t: f64| -> [f64; 3] { std::array::from_fn(|k| a[k] + t * (b[k] - a[k])) };
+    let hit = trace.hits.first().map(|h| RayHit {
+        object: scene.polygon(h.polygon).object,
+        polygon: h.polygon,
+        at: at(h.at),
+    });
     Ok(RayAnswer {
-        hit: None,
-        free: vec![[from, to]],
+        hit,
+        free: trace.free.iter().map(|&[s, t]| [at(s), at(t)]).collect(),
     })
 }

@@ -3,6 +3,7 @@
 //! Each rule is a function from the repository's files to broken rules; ARCHITECTURE.md says which
 //! invariant it guards.
 
+mod corpus;
 mod graph;
 mod layout;
 mod links;
@@ -68,6 +69,7 @@ fn check_files(files: &[File]) -> Report {
     words::check(files, &mut report);
     references::check(files, &mut report);
     links::check(files, &mut report);
+    corpus::check(files, &mut report);
     report
 }
 

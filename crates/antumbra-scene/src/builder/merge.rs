@@ -17,13 +17,16 @@ use antumbra_kernel::{Plane, Point, sub};
 use rustc_hash::FxHashMap;
 
 use super::clean::Patch;
+use super::cover::drop_covered;
 use super::plane::Frame;
 
-/// Merges the patches of one object. The result is ordered by the first patch each one contains.
-pub(crate) fn merge(points: &[Point], patches: Vec<Patch>) -> Vec<Patch> {
+/// Merges the patches of one object, and drops those that the others of their plane cover.
+/// Returns the rest, ordered by the first patch each one contains, and how many were dropped.
+pub(crate) fn merge(points: &[Point], patches: Vec<Patch>) -> (Vec<Patch>, usize) {
     if patches.len() < 2 {
-        return patches;
+        return (patches, 0);
     }
+    let mut dropped = 0;
     let key = |i: usize| {
         let Plane { normal, offset } = patches[i].plane;
         (normal, offset, patches[i].occludes)
@@ -40,7 +43,10 @@ pub(crate) fn merge(points: &[Point], patches: Vec<Patch>) -> Vec<Patch> {
         let Patch {
             plane, occludes, ..
         } = patches[group[0]];
-        for (first, corners) in merge_plane(points, Frame::facing(plane.normal), polygons) {
+        let frame = Frame::facing(plane.normal);
+        let mut merged = merge_plane(points, frame, polygons);
+        dropped += drop_covered(points, frame, &mut merged);
+        for (first, corners) in merged {
             kept.push((
                 group[first],
                 Patch {
@@ -52,7 +58,7 @@ pub(crate) fn merge(points: &[Point], patches: Vec<Patch>) -> Vec<Patch> {
         }
     }
     kept.sort_by_key(|(first, _)| *first);
-    kept.into_iter().map(|(_, patch)| patch).collect()
+    (kept.into_iter().map(|(_, patch)| patch).collect(), dropped)
 }
 
 /// Merges polygons of one plane; each comes back with the smallest index it contains.
@@ -217,7 +223,7 @@ mod tests {
         for face in faces {
             clean(&points, face, true, &mut patches);
         }
-        merge(&points, patches)
+        merge(&points, patches).0
     }
 
     #[test]
@@ -272,8 +278,8 @@ mod tests {
         let corners = [[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]];
         assert_eq!(merged(&corners, &[&[0, 1, 2], &[0, 1, 3]]).len(), 2);
         let layers = merged(&corners, &[&[0, 1, 2], &[0, 2, 3], &[0, 1, 3], &[1, 2, 3]]);
-        assert_eq!(layers.len(), 2);
-        assert!(layers.iter().all(|p| p.corners.len() == 4));
+        assert_eq!(layers.len(), 1);
+        assert_eq!(layers[0].corners.len(), 4);
     }
 
     #[test]
@@ -316,6 +322,6 @@ mod tests {
         let mut patches = Vec::new();
         clean(&points, &[0, 1, 2], true, &mut patches);
         clean(&points, &[0, 2, 3], false, &mut patches);
-        assert_eq!(merge(&points, patches).len(), 2);
+        assert_eq!(merge(&points, patches).0.len(), 2);
     }
 }
