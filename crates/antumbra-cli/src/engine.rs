@@ -51,6 +51,7 @@ pub(crate) fn record(result: &CellResult) -> CellRecord {
         object: entry.object.0,
         witness: entry.witness.map(|w| WitnessRecord {
             polygon: w.polygon.0,
+            source: w.source,
             from: w.from.0,
             through: w.through.0,
         }),
