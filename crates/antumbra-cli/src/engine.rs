@@ -37,10 +37,10 @@ pub(crate) fn header(
 }
 
 /// Three corners of a polygon that are not collinear.
-fn spanning(corners: &[antumbra_kernel::Point]) -> [[i32; 3]; 3] {
-    use antumbra_kernel::{cross, sub};
+fn spanning(corners: &[antumbra::kernel::Point]) -> [[i32; 3]; 3] {
+    use antumbra::kernel::{cross, sub};
     let (a, b) = (corners[0], corners[1]);
-    let apart = |c: &&antumbra_kernel::Point| cross(sub(b, a), sub(**c, a)) != [0; 3];
+    let apart = |c: &&antumbra::kernel::Point| cross(sub(b, a), sub(**c, a)) != [0; 3];
     let c = corners[2..].iter().find(apart).unwrap_or(&corners[2]);
     [a, b, *c].map(|p| [p.x, p.y, p.z])
 }
@@ -51,6 +51,7 @@ pub(crate) fn record(result: &CellResult) -> CellRecord {
         object: entry.object.0,
         witness: entry.witness.map(|w| WitnessRecord {
             polygon: w.polygon.0,
+            source: w.source,
             from: w.from.0,
             through: w.through.0,
         }),

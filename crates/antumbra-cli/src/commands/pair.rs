@@ -12,8 +12,9 @@ use crate::cancel::on_interrupt;
 use crate::cli::Global;
 use crate::ends::{End, end};
 use crate::failure::Failure;
-use crate::load::{SceneArgs, load};
+use crate::load::{SceneArgs, SceneBox, load};
 use crate::output::{line, seconds};
+use crate::values::PointArg;
 
 /// Options of `pair`.
 #[derive(Args, Debug)]
@@ -54,7 +55,17 @@ Examples:
 
 /// Answers one question or many.
 pub(crate) fn run(args: &PairArgs, global: &Global) -> Result<(), Failure> {
-    let loaded = load(&args.scene, global, None)?;
+    let questions = match (&args.from, &args.to) {
+        (Some(from), Some(to)) => vec![Question::new(0, from, to)],
+        _ => from_stdin()?,
+    };
+    // Points take part in the choice of the grid, so all of them are read first.
+    let points = questions.iter().flat_map(|q| [&q.from, &q.to]);
+    let hull = points
+        .filter_map(|text| text.parse::<PointArg>().ok())
+        .map(|PointArg(p)| (p, p))
+        .reduce(join);
+    let loaded = load(&args.scene, global, hull)?;
     let asker = Asker {
         scene: &loaded.scene,
         pairs: Pairs::new(&loaded.scene),
@@ -64,17 +75,56 @@ pub(crate) fn run(args: &PairArgs, global: &Global) -> Result<(), Failure> {
             cancel: Some(on_interrupt()?),
         },
     };
-    if args.all {
-        return all(&asker);
+    if !args.all {
+        let Question { from, to, .. } = &questions[0];
+        let result = asker.ask(from, to)?;
+        return global
+            .output()
+            .result(&result, &sentence(from, to, &result));
     }
-    let (Some(from), Some(to)) = (&args.from, &args.to) else {
-        return Err(Failure::Usage(
-            "--from and --to are both needed; see `antumbra pair --help`".to_owned(),
-        ));
-    };
-    let result = asker.ask(from, to)?;
-    let text = sentence(from, to, &result);
-    global.output().result(&result, &text)
+    for Question {
+        line: number,
+        from,
+        to,
+    } in &questions
+    {
+        line(
+            &asker
+                .ask(from, to)
+                .map_err(|f| at_line(*number, &f))?
+                .to_string(),
+        )?;
+    }
+    Ok(())
+}
+
+/// The box around two boxes.
+fn join((a, b): SceneBox, (c, d): SceneBox) -> SceneBox {
+    (
+        std::array::from_fn(|k| a[k].min(c[k])),
+        std::array::from_fn(|k| b[k].max(d[k])),
+    )
+}
+
+/// Two ends, and the line they were read from.
+struct Question {
+    line: usize,
+    from: String,
+    to: String,
+}
+
+impl Question {
+    fn new(line: usize, from: &str, to: &str) -> Self {
+        Self {
+            line,
+            from: from.trim().to_owned(),
+            to: to.trim().to_owned(),
+        }
+    }
+}
+
+fn at_line(line: usize, failure: &Failure) -> Failure {
+    Failure::Content(format!("stdin, line {line}: {failure}"))
 }
 
 /// What all questions share.
@@ -96,32 +146,27 @@ impl Asker<'_> {
     }
 }
 
-/// Reads pairs line by line; a line that cannot be answered ends the run with its number.
-fn all(asker: &Asker<'_>) -> Result<(), Failure> {
-    for (number, text) in std::io::stdin().lock().lines().enumerate() {
-        let number = number + 1;
+/// Reads pairs, one a line; empty lines and comments are left out.
+fn from_stdin() -> Result<Vec<Question>, Failure> {
+    let mut questions = Vec::new();
+    for (index, text) in std::io::stdin().lock().lines().enumerate() {
         let text =
             text.map_err(|cause| Failure::Path(format!("stdin cannot be read ({cause})")))?;
         let text = text.trim();
         if text.is_empty() || text.starts_with('#') {
             continue;
         }
-        let at_line =
-            |failure: Failure| Failure::Content(format!("stdin, line {number}: {failure}"));
-        let halves = match text.split_once('\t') {
-            Some((from, to)) => Some((from.trim(), to.trim())),
-            None => match text.split_whitespace().collect::<Vec<_>>()[..] {
-                [from, to] => Some((from, to)),
-                _ => None,
-            },
+        let words: Vec<&str> = match text.split_once('\t') {
+            Some((from, to)) => vec![from, to],
+            None => text.split_whitespace().collect(),
         };
-        let Some((from, to)) = halves else {
+        let [from, to] = words[..] else {
             let text = "expected two ends; separate them by a tab if names contain blanks";
-            return Err(at_line(Failure::Content(text.to_owned())));
+            return Err(at_line(index + 1, &Failure::Content(text.to_owned())));
         };
-        line(&asker.ask(from, to).map_err(at_line)?.to_string())?;
+        questions.push(Question::new(index + 1, from, to));
     }
-    Ok(())
+    Ok(questions)
 }
 
 fn pair_end(scene: &Scene, text: &str) -> Result<PairEnd, Failure> {

@@ -30,7 +30,7 @@ pub struct FloorPlan {
     pub places: Vec<(String, [f64; 3], [f64; 3])>,
 }
 
-/// A furnished floor: five rooms on each side of a corridor, after \[Teller91\].
+/// A furnished floor: five rooms on each side of a corridor, after \[TS92\].
 ///
 /// The floor measures 20.4 m by 12.8 m. Walls are solid and closed at every joint; windows are
 /// translucent panes; each door is either a leaf that closes its doorway or a leaf turned into the

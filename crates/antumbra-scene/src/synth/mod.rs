@@ -9,8 +9,8 @@
 //! |---|---|
 //! | [`random_triangles`] | \[Bittner02, 8.14.1\] tests R1 to R9 |
 //! | [`layers`] | \[Bittner02, 8.14.2\] tests S1 to S6: walls and chessboards |
-//! | [`office`] | \[Chrysanthou96\]: offices of 139 to 751 polygons with a light |
-//! | [`floor`] | \[Teller91\]: a furnished office floor; also the scene of `antumbra demo` |
+//! | [`office`] | \[Chry96\]: offices of 139 to 751 polygons with a light |
+//! | [`floor`] | \[TS92\]: a furnished office floor; also the scene of `antumbra demo` |
 //! | [`maze`] | \[Bittner02, 4.8\] `big-7`: a maze of furnished rooms |
 //!
 //! A number of polygons is the number of faces handed to the builder, which may merge coplanar

@@ -4,7 +4,7 @@ use super::furniture::Piece::{self, Cabinet, Chair, Monitor, Picture, Shelf, Tab
 use super::shape::{Place, Shape, number_names};
 use crate::SceneInput;
 
-/// Which office; the numbers of polygons are those of \[Chrysanthou96, Table 1\].
+/// Which office; the numbers of polygons are those of \[Chry96, Table 1\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OfficeKind {
     /// 139 polygons: one desk.

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use antumbra::region::{CheckReport, FinePoint, VisibleEntry, Witness, check_cell};
-use antumbra_io::pvs::{CellIndex, PvsCell, PvsCellKind};
+use antumbra::region::{Accuracy, CheckReport, FinePoint, VisibleEntry, Witness, check_cell};
+use antumbra_io::pvs::{Accuracy as Stored, CellIndex, PvsCell, PvsCellKind};
 use antumbra_io::{ProofFile, PvsFile, PvsWriter};
 use antumbra_scene::{CellKind, ObjectId, PolygonId, Scene, ViewCell};
 use clap::Args;
@@ -137,11 +137,13 @@ pub(crate) fn check(
                     from: FinePoint(w.from),
                     through: FinePoint(w.through),
                     polygon: PolygonId(w.polygon),
-                    source: 0,
+                    source: w.source,
                 }),
             })
             .collect();
-        let report = check_cell(scene, &cell, &visible, &proof);
+        let unknown: Vec<ObjectId> = record.unknown.iter().map(|id| ObjectId(*id)).collect();
+        let accuracy = stored_accuracy(record.accuracy);
+        let report = check_cell(scene, &cell, &visible, &unknown, accuracy, &proof);
         bar.inc(1);
         Ok(report)
     };
@@ -150,17 +152,25 @@ pub(crate) fn check(
         pool.install(|| indices.into_par_iter().with_max_len(1).map(one).collect());
     bar.finish_and_clear();
     let mut report = CheckReport::default();
-    for (index, mut part) in reports?.into_iter().enumerate() {
+    for part in reports? {
         report.visible_checked += part.visible_checked;
         report.hidden_checked += part.hidden_checked;
-        report
-            .failed
-            .extend(part.failed.drain(..).map(|f| format!("cell {index}: {f}")));
+        report.failed.extend(part.failed);
     }
     Ok(Checked {
         report,
         time: start.elapsed(),
     })
+}
+
+/// A stored accuracy class as the engine knows it.
+fn stored_accuracy(accuracy: Stored) -> Accuracy {
+    match accuracy {
+        Stored::Exact => Accuracy::Exact,
+        // The engine never writes the last one; conservative claims the least that can be checked.
+        Stored::Conservative | Stored::Approximate => Accuracy::Conservative,
+        Stored::AggressiveBelow(angle) => Accuracy::AggressiveBelow(angle),
+    }
 }
 
 /// A stored cell as the engine knows it.
