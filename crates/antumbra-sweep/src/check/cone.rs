@@ -44,14 +44,12 @@ pub(super) struct Cone<N: Numbers> {
     pub rays: Vec<Ray<N::Vertex>>,
 }
 
-/// What a hyperplane does to a cone.
-pub(super) enum Cut<N: Numbers> {
-    /// The cone lies inside.
+/// How a hyperplane lies to a cone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Lie {
     Inside,
-    /// It lies outside.
     Outside,
-    /// The inside and the outside part.
-    Both(Cone<N>, Cone<N>),
+    Across,
 }
 
 impl<N: Numbers> Cone<N> {
@@ -84,10 +82,9 @@ impl<N: Numbers> Cone<N> {
             rays,
         };
         for row in others {
-            match cone.cut(row)? {
-                Cut::Inside => {}
-                Cut::Outside => return Ok(None),
-                Cut::Both(inside, _) => cone = inside,
+            match cone.keep_inside(row)? {
+                Some(inside) => cone = inside,
+                None => return Ok(None),
             }
         }
         Ok(Some(cone))
@@ -102,60 +99,95 @@ impl<N: Numbers> Cone<N> {
                 .all(|ray| !N::sign(row, &ray.vertex).is_negative())
     }
 
-    /// Cuts by a hyperplane.
-    pub(super) fn cut(&self, row: &N::Row) -> Result<Cut<N>, Trouble> {
-        let signs: Vec<Sign> = self
-            .rays
-            .iter()
-            .map(|ray| N::sign(row, &ray.vertex))
-            .collect();
-        if !signs.contains(&Sign::Negative) {
-            return Ok(Cut::Inside);
+    /// Whether a row can be added without leaving the range of the numbers.
+    pub(super) fn has_room(&self, row: &N::Row) -> bool {
+        N::excess(row) + self.rows.iter().map(N::excess).sum::<u32>() <= N::ROOM
+    }
+
+    /// The parts inside and outside a half-space; `None` for a part without interior.
+    pub(super) fn cut(mut self, row: &N::Row) -> Result<[Option<Self>; 2], Trouble> {
+        let signs = self.signs(row);
+        match lie(&signs) {
+            Lie::Inside => return Ok([Some(self), None]),
+            Lie::Outside => return Ok([None, Some(self)]),
+            Lie::Across => {}
         }
-        if !signs.contains(&Sign::Positive) {
-            return Ok(Cut::Outside);
+        let crossings = self.crossings(row, &signs)?;
+        let mut outside = Self {
+            rows: self.rows.clone(),
+            rays: crossings.clone(),
+        };
+        outside.rows.push(N::complement(row));
+        let mut inside = Self {
+            rows: self.rows,
+            rays: crossings,
+        };
+        inside.rows.push(row.clone());
+        let bit = 1 << (inside.rows.len() - 1);
+        for (mut ray, sign) in self.rays.drain(..).zip(signs) {
+            match sign {
+                Sign::Positive => inside.rays.push(ray),
+                Sign::Negative => outside.rays.push(ray),
+                Sign::Zero => {
+                    ray.tight |= bit;
+                    inside.rays.push(ray.clone());
+                    outside.rays.push(ray);
+                }
+            }
         }
-        if N::excess(row) + self.rows.iter().map(N::excess).sum::<u32>() > N::ROOM {
+        inside.drop_redundant_rows();
+        outside.drop_redundant_rows();
+        Ok([Some(inside), Some(outside)])
+    }
+
+    /// The part inside a half-space only.
+    pub(super) fn keep_inside(mut self, row: &N::Row) -> Result<Option<Self>, Trouble> {
+        let signs = self.signs(row);
+        match lie(&signs) {
+            Lie::Inside => return Ok(Some(self)),
+            Lie::Outside => return Ok(None),
+            Lie::Across => {}
+        }
+        let crossings = self.crossings(row, &signs)?;
+        let bit = 1 << self.rows.len();
+        self.rows.push(row.clone());
+        for (ray, sign) in self.rays.iter_mut().zip(&signs) {
+            if sign.is_zero() {
+                ray.tight |= bit;
+            }
+        }
+        let mut signs = signs.into_iter();
+        self.rays.retain(|_| signs.next() != Some(Sign::Negative));
+        self.rays.extend(crossings);
+        self.drop_redundant_rows();
+        Ok(Some(self))
+    }
+
+    fn signs(&self, row: &N::Row) -> Vec<Sign> {
+        let on = |ray: &Ray<N::Vertex>| N::sign(row, &ray.vertex);
+        self.rays.iter().map(on).collect()
+    }
+
+    /// The new rays: one on each edge that a hyperplane crosses.
+    fn crossings(&self, row: &N::Row, signs: &[Sign]) -> Result<Vec<Ray<N::Vertex>>, Trouble> {
+        if !self.has_room(row) {
             return Err(Trouble::TooWide);
         }
         if self.rows.len() == MOST_ROWS {
             return Err(Trouble::TooManyFacets);
         }
-        let bit = 1_u128 << self.rows.len();
-        let mut shared = Vec::new();
+        let mut out = Vec::new();
         for (i, p) in self.rays.iter().enumerate() {
-            if signs[i].is_zero() {
-                shared.push(Ray {
-                    vertex: p.vertex.clone(),
-                    tight: p.tight | bit,
-                });
-            }
             if !signs[i].is_positive() {
                 continue;
             }
             for (j, n) in self.rays.iter().enumerate() {
                 if signs[j].is_negative() && self.adjacent(i, j) {
-                    shared.push(self.crossing(p.tight & n.tight, row, bit)?);
+                    out.push(self.crossing(p.tight & n.tight, row)?);
                 }
             }
         }
-        let part = |side: Sign, row: N::Row| {
-            let own = self.rays.iter().zip(&signs).filter(|(_, s)| **s == side);
-            let rays = own
-                .map(|(ray, _)| ray.clone())
-                .chain(shared.iter().cloned());
-            let mut rows = self.rows.clone();
-            rows.push(row);
-            Self {
-                rows,
-                rays: rays.collect(),
-            }
-            .without_redundant_rows()
-        };
-        Ok(Cut::Both(
-            part(Sign::Positive, row.clone()),
-            part(Sign::Negative, N::complement(row)),
-        ))
+        Ok(out)
     }
 
     /// Whether two rays span an edge.
@@ -177,7 +209,7 @@ impl<N: Numbers> Cone<N> {
     }
 
     /// Where a hyperplane meets the edge on which some rows are tight.
-    fn crossing(&self, common: u128, row: &N::Row, bit: u128) -> Result<Ray<N::Vertex>, Trouble> {
+    fn crossing(&self, common: u128, row: &N::Row) -> Result<Ray<N::Vertex>, Trouble> {
         let four = self.independent(common)?;
         let vertex = N::meet([four[0], four[1], four[2], four[3], row]);
         // Every row that is not tight on the edge is positive in its interior.
@@ -190,7 +222,7 @@ impl<N: Numbers> Cone<N> {
         };
         Ok(Ray {
             vertex,
-            tight: common | bit,
+            tight: common | 1 << self.rows.len(),
         })
     }
 
@@ -211,27 +243,42 @@ impl<N: Numbers> Cone<N> {
     }
 
     /// Drops rows that bound no facet.
-    fn without_redundant_rows(mut self) -> Self {
+    fn drop_redundant_rows(&mut self) {
         let mut counts = [0_u32; MOST_ROWS];
         for ray in &self.rays {
             bits(ray.tight).for_each(|k| counts[k] += 1);
         }
-        let kept: Vec<usize> = (0..self.rows.len())
-            .filter(|&k| counts[k] >= FACET_RAYS)
-            .collect();
-        if kept.len() < self.rows.len() {
-            let mut place = [MOST_ROWS; MOST_ROWS];
-            for (new, &old) in kept.iter().enumerate() {
-                place[old] = new;
-            }
-            for ray in &mut self.rays {
-                ray.tight = bits(ray.tight)
-                    .filter(|&k| place[k] < MOST_ROWS)
-                    .fold(0, |mask, k| mask | 1 << place[k]);
-            }
-            self.rows = kept.into_iter().map(|k| self.rows[k].clone()).collect();
+        let rows = self.rows.len();
+        if counts[..rows].iter().all(|&n| n >= FACET_RAYS) {
+            return;
         }
-        self
+        let mut place = [MOST_ROWS; MOST_ROWS];
+        let mut kept = 0;
+        for k in (0..rows).filter(|&k| counts[k] >= FACET_RAYS) {
+            place[k] = kept;
+            kept += 1;
+        }
+        for ray in &mut self.rays {
+            ray.tight = bits(ray.tight)
+                .filter(|&k| place[k] < MOST_ROWS)
+                .fold(0, |mask, k| mask | 1 << place[k]);
+        }
+        let mut number = 0..;
+        self.rows.retain(|_| {
+            number
+                .next()
+                .is_some_and(|k: usize| counts[k] >= FACET_RAYS)
+        });
+    }
+}
+
+fn lie(signs: &[Sign]) -> Lie {
+    if !signs.contains(&Sign::Negative) {
+        Lie::Inside
+    } else if !signs.contains(&Sign::Positive) {
+        Lie::Outside
+    } else {
+        Lie::Across
     }
 }
 
@@ -250,7 +297,7 @@ pub(super) fn bits(mut set: u128) -> impl Iterator<Item = usize> {
 mod tests {
     use super::super::big::{Big, Wide};
     use super::super::fast::{Fast, FastRow};
-    use super::{Cone, Cut, Numbers, Trouble, bits};
+    use super::{Cone, Numbers, Trouble, bits};
     use antumbra_kernel::Sign;
 
     struct Random(u64);
@@ -314,8 +361,9 @@ mod tests {
             sanity(&big);
             for _ in 0..6 {
                 let row = FastRow::new(random.row(range));
-                match cone.cut(&row) {
-                    Ok(Cut::Both(inside, outside)) => {
+                let kept = cone.clone().keep_inside(&row).expect("room");
+                match cone.clone().cut(&row).expect("room") {
+                    [Some(inside), Some(outside)] => {
                         sanity(&inside);
                         sanity(&outside);
                         assert!(inside.within(&row) && !outside.within(&row));
@@ -324,12 +372,16 @@ mod tests {
                             c.rays.iter().filter(|r| zero(&r.vertex)).count()
                         };
                         assert_eq!(on(&inside), on(&outside));
+                        let kept = kept.expect("an inside");
+                        sanity(&kept);
+                        assert_eq!(kept.rays.len(), inside.rays.len());
                         both += 1;
                         cone = if both % 2 == 0 { inside } else { outside };
                     }
-                    Ok(Cut::Inside) => assert!(cone.within(&row)),
-                    Ok(Cut::Outside) => assert!(cone.within(&Fast::complement(&row))),
-                    Err(trouble) => panic!("{trouble:?}"),
+                    [Some(inside), None] => assert!(inside.within(&row) && kept.is_some()),
+                    [None, _] => {
+                        assert!(cone.within(&Fast::complement(&row)) && kept.is_none());
+                    }
                 }
             }
         }

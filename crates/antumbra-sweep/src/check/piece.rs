@@ -1,11 +1,9 @@
 //! Pieces of line space between two gates, with fixed-width or with big numbers.
 
-use std::rc::Rc;
-
 use antumbra_kernel::Sign;
 
-use super::big::{Big, Wide};
-use super::cone::{Cone, Cut, Ray, Trouble};
+use super::big::{Big, Wide, primitive};
+use super::cone::{Cone, Ray, Trouble};
 use super::ends::Gate;
 use super::fast::{Fast, FastRow};
 use super::numbers::Numbers;
@@ -17,9 +15,9 @@ use super::start::{corner_lines, start_rows};
 #[derive(Clone, Debug)]
 pub(super) enum Piece {
     /// In fixed widths.
-    Fast(Rc<Cone<Fast>>),
+    Fast(Cone<Fast>),
     /// In big integers.
-    Big(Rc<Cone<Big>>),
+    Big(Cone<Big>),
 }
 
 impl Piece {
@@ -44,38 +42,11 @@ impl Piece {
         if let Some(rows) = narrow {
             match Cone::of(&rows) {
                 Err(Trouble::TooWide) => {}
-                done => return Ok(done?.map(|cone| Self::Fast(Rc::new(cone)))),
+                done => return Ok(done?.map(Self::Fast)),
             }
         }
         let rows: Vec<Wide> = rows.iter().map(Hyperplane::wide).collect();
-        Ok(Cone::of(&rows)?.map(|cone| Self::Big(Rc::new(cone))))
-    }
-
-    /// The tightest piece: the convex hull of all lines between corners of the gates, cut by some
-    /// rows. Slow; `Ok(None)` if it has no interior.
-    pub(super) fn tightest(
-        from: &Gate,
-        to: &Gate,
-        path: &[Hyperplane],
-    ) -> Result<Option<Self>, Trouble> {
-        // The facets of the hull are the extreme rays of the dual cone.
-        let lines: Vec<Wide> = corner_lines(from, to)
-            .into_iter()
-            .map(|line| Wide::new(super::big::primitive(line)))
-            .collect();
-        let Some(dual) = Cone::<Big>::of(&lines)? else {
-            return Err(Trouble::NotPointed);
-        };
-        let mut rows: Vec<Wide> = dual
-            .rays
-            .iter()
-            .map(|ray| Wide::new(super::big::primitive((*ray.vertex.exact).clone())))
-            .collect();
-        if from.straddles(&to.plane) && to.straddles(&from.plane) {
-            rows.push(Hyperplane::common_line(&from.plane, &to.plane).wide());
-        }
-        rows.extend(path.iter().map(Hyperplane::wide));
-        Ok(Cone::of(&rows)?.map(|cone| Self::Big(Rc::new(cone))))
+        Ok(Cone::of(&rows)?.map(Self::Big))
     }
 
     /// Whether a half-space contains the piece.
@@ -91,48 +62,24 @@ impl Piece {
     }
 
     /// The parts inside and outside a half-space; `None` for a part without interior.
-    pub(super) fn cut(&self, row: &Hyperplane) -> Result<[Option<Self>; 2], Trouble> {
+    pub(super) fn cut(self, row: &Hyperplane) -> Result<[Option<Self>; 2], Trouble> {
         match (self, row) {
-            (Self::Fast(cone), Hyperplane::Narrow(row)) => match cone.cut(row) {
-                Err(Trouble::TooWide) => self.cut_wide(&Wide::new(Fast::wide(row))),
-                done => Ok(self.parts(done?, Self::Fast)),
-            },
-            (Self::Fast(cone), Hyperplane::Wide(row)) => {
+            (Self::Fast(cone), Hyperplane::Narrow(row)) if cone.has_room(row) => {
+                Ok(cone.cut(row)?.map(|part| part.map(Self::Fast)))
+            }
+            (Self::Fast(cone), row) => {
+                let wide = row.wide();
                 let on = |side: Sign| {
                     let mut rays = cone.rays.iter();
-                    rays.any(|ray| sign_at(row, &ray.vertex) == side)
+                    rays.any(|ray| sign_at(&wide, &ray.vertex) == side)
                 };
                 match (on(Sign::Positive), on(Sign::Negative)) {
-                    (_, false) => Ok([Some(self.clone()), None]),
-                    (false, true) => Ok([None, Some(self.clone())]),
-                    (true, true) => self.cut_wide(row),
+                    (_, false) => Ok([Some(Self::Fast(cone)), None]),
+                    (false, true) => Ok([None, Some(Self::Fast(cone))]),
+                    (true, true) => Self::Big(widened(&cone)).cut(row),
                 }
             }
-            (Self::Big(_), row) => self.cut_wide(&row.wide()),
-        }
-    }
-
-    fn cut_wide(&self, row: &Wide) -> Result<[Option<Self>; 2], Trouble> {
-        let wide;
-        let cone = match self {
-            Self::Big(cone) => cone,
-            Self::Fast(cone) => {
-                wide = widened(cone);
-                &wide
-            }
-        };
-        Ok(self.parts(cone.cut(row)?, Self::Big))
-    }
-
-    fn parts<N: Numbers>(
-        &self,
-        cut: Cut<N>,
-        piece: impl Fn(Rc<Cone<N>>) -> Self,
-    ) -> [Option<Self>; 2] {
-        match cut {
-            Cut::Inside => [Some(self.clone()), None],
-            Cut::Outside => [None, Some(self.clone())],
-            Cut::Both(inside, outside) => [inside, outside].map(|cone| Some(piece(Rc::new(cone)))),
+            (Self::Big(cone), row) => Ok(cone.cut(&row.wide())?.map(|part| part.map(Self::Big))),
         }
     }
 
@@ -143,6 +90,22 @@ impl Piece {
             Self::Big(cone) => holds_real_lines(cone),
         }
     }
+}
+
+/// The half-spaces that bound the convex hull of all lines between corners of two gates: the
+/// smallest convex cone that holds all real lines between them. Slow.
+pub(super) fn hull(from: &Gate, to: &Gate) -> Result<Vec<Hyperplane>, Trouble> {
+    // Facets are the extreme rays of the dual cone.
+    let lines: Vec<Wide> = corner_lines(from, to)
+        .into_iter()
+        .map(|line| Wide::new(primitive(line)))
+        .collect();
+    let dual = Cone::<Big>::of(&lines)?.ok_or(Trouble::NotPointed)?;
+    Ok(dual
+        .rays
+        .iter()
+        .map(|ray| Hyperplane::of_big(primitive((*ray.vertex.exact).clone())))
+        .collect())
 }
 
 /// The same cone in big integers.

@@ -161,7 +161,6 @@ fn cross(a: &[IBig; 3], b: &[IBig; 3]) -> [IBig; 3] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::cone::Cut;
     use super::super::ends::Gate;
     use super::super::fast::{Fast, FastRow};
     use super::super::piece::Piece;
@@ -184,7 +183,7 @@ mod tests {
     fn start(from: &Gate, to: &Gate) -> Cone<Fast> {
         let pieces = Piece::all_between(from, to).expect("small rows");
         match &pieces[..] {
-            [Piece::Fast(cone)] => (**cone).clone(),
+            [Piece::Fast(cone)] => cone.clone(),
             other => panic!("{} pieces", other.len()),
         }
     }
@@ -202,11 +201,8 @@ mod tests {
         let mut cells = vec![start(&square(4000, -1000), &square(4000, 1000))];
         for (x, y) in [(30, 20), (500, 0), (-300, 400), (-200, -450)] {
             let row = edge_row(Point::new(x, y, -1000), Point::new(-y, x, 1000));
-            let cut = |cell: Cone<Fast>| match cell.cut(&FastRow::new(row)).expect("small") {
-                Cut::Both(inside, outside) => vec![inside, outside],
-                _ => vec![cell],
-            };
-            cells = cells.into_iter().flat_map(cut).collect();
+            let cut = |cell: Cone<Fast>| cell.cut(&FastRow::new(row)).expect("small rows");
+            cells = cells.into_iter().flat_map(cut).flatten().collect();
         }
         cells
     }

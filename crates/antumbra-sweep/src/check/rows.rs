@@ -46,7 +46,22 @@ impl Hyperplane {
             IBig::from(d[1]),
             IBig::from(d[2]),
         ];
-        Self::Wide(Wide::new(primitive(row)))
+        Self::of_big(primitive(row))
+    }
+
+    /// From big coefficients without a common factor.
+    pub(super) fn of_big(row: [IBig; 6]) -> Self {
+        let mut small = [0_i128; 6];
+        for (to, from) in small.iter_mut().zip(&row) {
+            match i128::try_from(from) {
+                Ok(c) => *to = c,
+                Err(_) => return Self::Wide(Wide::new(row)),
+            }
+        }
+        match narrow(small) {
+            Some(row) => Self::Narrow(row),
+            None => Self::Wide(Wide::new(row)),
+        }
     }
 
     /// The complement if `negative`.

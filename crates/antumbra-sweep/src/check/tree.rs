@@ -1,5 +1,6 @@
 //! Walks the tree of a pair of gates: cuts where it says so, and checks what its leaves say.
 
+use std::cell::OnceCell;
 use std::ops::Range;
 
 use antumbra_kernel::{Plane, Sign};
@@ -7,7 +8,7 @@ use antumbra_scene::{PolygonId, PolygonRef, Scene};
 
 use super::cone::Trouble;
 use super::ends::Gate;
-use super::piece::Piece;
+use super::piece::{Piece, hull};
 use super::rows::Hyperplane;
 use crate::RowName;
 use crate::proof::{Node, Tree};
@@ -27,16 +28,6 @@ pub(super) struct Question<'a> {
     pub may_ignore: bool,
 }
 
-/// A part of the tree still to be walked.
-struct Pending {
-    /// `None` if it has no interior: then everything is true of it.
-    piece: Option<Piece>,
-    /// How many rows of the path lead to its parent.
-    depth: usize,
-    /// The last row of its path.
-    last: Option<Hyperplane>,
-}
-
 /// Checks a tree.
 ///
 /// # Errors
@@ -44,96 +35,98 @@ struct Pending {
 pub(super) fn check_tree(question: &Question<'_>, tree: &Tree) -> Result<(), String> {
     let starts = Piece::all_between(question.from, question.to)
         .map_err(|trouble| format!("the start cone cannot be built ({trouble:?})"))?;
+    let hull = OnceCell::new();
     for start in starts {
-        walk(question, tree, start)?;
+        Walk {
+            question,
+            hull: &hull,
+        }
+        .tree(tree, start)?;
     }
     Ok(())
 }
 
-fn walk(question: &Question<'_>, tree: &Tree, start: Piece) -> Result<(), String> {
-    let mut nodes = tree.nodes.iter().enumerate();
-    let mut path: Vec<Hyperplane> = Vec::new();
-    let mut pending = vec![Pending {
-        piece: Some(start),
-        depth: 0,
-        last: None,
-    }];
-    while let Some(Pending { piece, depth, last }) = pending.pop() {
-        let Some((number, node)) = nodes.next() else {
-            return Err(format!("the tree ends after {} nodes", tree.nodes.len()));
-        };
-        path.truncate(depth);
-        path.extend(last);
-        let Node::Split { row, negative } = *node else {
-            if let Some(piece) = piece {
-                check_leaf(question, node, &piece, &path)
-                    .map_err(|what| format!("node {number}: {what}"))?;
-            }
-            continue;
-        };
-        let mut parts = [None, None];
-        let mut rows = [None, None];
-        if let Some(piece) = piece {
-            let row = question
-                .hyperplane(row)
-                .map_err(|what| format!("node {number}: {what}"))?
-                .turned(negative);
-            parts = piece.cut(&row).map_err(|trouble| {
-                format!("node {number}: the piece cannot be cut ({trouble:?})")
-            })?;
-            rows = [Some(row.clone()), Some(row.turned(true))];
-        }
-        let depth = path.len();
-        for (piece, last) in parts.into_iter().zip(rows).rev() {
-            pending.push(Pending { piece, depth, last });
-        }
-    }
-    match nodes.next() {
-        Some((number, _)) => Err(format!("node {number} is beyond the end of the tree")),
-        None => Ok(()),
-    }
+struct Walk<'a> {
+    question: &'a Question<'a>,
+    /// The facets of the lines' hull, once they are needed.
+    hull: &'a OnceCell<Result<Vec<Hyperplane>, Trouble>>,
 }
 
-fn check_leaf(
-    question: &Question<'_>,
-    node: &Node,
-    piece: &Piece,
-    path: &[Hyperplane],
-) -> Result<(), String> {
-    let tightest = || Piece::tightest(question.from, question.to, path);
-    match *node {
-        Node::Split { .. } => Ok(()),
-        Node::Ignored if question.may_ignore => Ok(()),
-        Node::Ignored => Err("a piece is ignored, but the bake was not allowed to".into()),
-        Node::Imaginary => {
-            if !piece.holds_real_lines() || settled(tightest(), |p| !p.holds_real_lines()) {
-                Ok(())
-            } else {
-                Err("the piece is called imaginary but holds an open set of real lines".into())
+impl Walk<'_> {
+    fn tree(&self, tree: &Tree, start: Piece) -> Result<(), String> {
+        let mut nodes = tree.nodes.iter().enumerate();
+        // Pieces without interior are `None`: everything is true of them.
+        let mut pending = vec![Some(start)];
+        while let Some(piece) = pending.pop() {
+            let Some((number, node)) = nodes.next() else {
+                return Err(format!("the tree ends after {} nodes", tree.nodes.len()));
+            };
+            let at_node = |what| format!("node {number}: {what}");
+            match (node, piece) {
+                (Node::Split { .. }, None) => pending.extend([None, None]),
+                (_, None) => {}
+                (&Node::Split { row, negative }, Some(piece)) => {
+                    let row = self.question.hyperplane(row).map_err(at_node)?;
+                    let [inside, outside] = piece
+                        .cut(&row.turned(negative))
+                        .map_err(|trouble| format!("the piece cannot be cut ({trouble:?})"))
+                        .map_err(at_node)?;
+                    pending.extend([outside, inside]);
+                }
+                (leaf, Some(piece)) => self.leaf(leaf, piece).map_err(at_node)?,
             }
         }
-        Node::Blocked { polygon, negative } => {
-            let rows = question.blocked_rows(polygon, negative)?;
-            for (row, name) in &rows {
-                if !piece.within(row) && !settled(tightest(), |p| p.within(row)) {
-                    let way = if negative { "against" } else { "along" };
-                    return Err(format!(
-                        "polygon {} is said to block all lines of the piece {way} its normal, but some pass outside {name}",
-                        polygon.0
-                    ));
+        match nodes.next() {
+            Some((number, _)) => Err(format!("node {number} is beyond the end of the tree")),
+            None => Ok(()),
+        }
+    }
+
+    fn leaf(&self, node: &Node, piece: Piece) -> Result<(), String> {
+        match *node {
+            Node::Split { .. } => Ok(()),
+            Node::Ignored if self.question.may_ignore => Ok(()),
+            Node::Ignored => Err("a piece is ignored, but the bake was not allowed to".into()),
+            Node::Imaginary => {
+                if self.settled(piece, |p| !p.holds_real_lines()) {
+                    Ok(())
+                } else {
+                    Err("the piece is called imaginary but holds an open set of real lines".into())
                 }
             }
-            Ok(())
+            Node::Blocked { polygon, negative } => {
+                let rows = self.question.blocked_rows(polygon, negative)?;
+                let Some((_, name)) = rows.iter().find(|(row, _)| !piece.within(row)) else {
+                    return Ok(());
+                };
+                if self.settled(piece, |p| rows.iter().all(|(row, _)| p.within(row))) {
+                    return Ok(());
+                }
+                let way = if negative { "against" } else { "along" };
+                Err(format!(
+                    "polygon {} is said to block all lines of the piece {way} its normal, but some pass outside {name}",
+                    polygon.0
+                ))
+            }
         }
     }
-}
 
-/// Whether the tightest piece has a property; without interior it has all.
-fn settled(piece: Result<Option<Piece>, Trouble>, holds: impl Fn(&Piece) -> bool) -> bool {
-    match piece {
-        Ok(Some(piece)) => holds(&piece),
-        Ok(None) => true,
-        Err(_) => false,
+    /// Whether a piece has a property, if need be after it was cut by all facets of the hull of
+    /// lines.
+    fn settled(&self, mut piece: Piece, holds: impl Fn(&Piece) -> bool) -> bool {
+        if holds(&piece) {
+            return true;
+        }
+        let question = self.question;
+        let hull = self.hull.get_or_init(|| hull(question.from, question.to));
+        for facet in hull.iter().flatten() {
+            match piece.cut(facet) {
+                Ok([Some(inside), _]) => piece = inside,
+                Ok([None, _]) => return true,
+                Err(_) => return false,
+            }
+        }
+        holds(&piece)
     }
 }
 
