@@ -40,12 +40,16 @@ fn norm(v: &[f64; 6]) -> f64 {
 impl Sampler {
     pub(crate) fn new(space: &PluckerSpace, cone: &Cone) -> Self {
         let rays: Vec<[f64; 6]> = cone.vertices().map(|v| *space.rounded_vertex(v)).collect();
-        let lengths: Vec<f64> =
-            rays.iter().map(|r| r[0].abs().max(r[1].abs()).max(r[2].abs())).collect();
+        let lengths: Vec<f64> = rays
+            .iter()
+            .map(|r| r[0].abs().max(r[1].abs()).max(r[2].abs()))
+            .collect();
         let longest = lengths.iter().fold(0.0, |m: f64, &l| m.max(l));
         // Rays with next to no direction are imaginary: they keep a bounded factor.
-        let balance =
-            lengths.iter().map(|&l| longest / l.max(longest / (1_u64 << 40) as f64)).collect();
+        let balance = lengths
+            .iter()
+            .map(|&l| longest / l.max(longest / (1_u64 << 40) as f64))
+            .collect();
         Self { rays, balance }
     }
 

@@ -24,21 +24,37 @@ fn build(case: &Case) -> Scene {
                     let polygon = &case.polygons[i];
                     let mut faces = Faces::default();
                     faces.push(&(0..polygon.corners.len() as u32).collect::<Vec<_>>());
-                    let vertices =
-                        polygon.corners.iter().map(|c| c.map(|v| v as f64)).collect();
-                    PartInput { class: None, translucent: !polygon.occludes, vertices, faces }
+                    let vertices = polygon
+                        .corners
+                        .iter()
+                        .map(|c| c.map(|v| v as f64))
+                        .collect();
+                    PartInput {
+                        class: None,
+                        translucent: !polygon.occludes,
+                        vertices,
+                        faces,
+                    }
                 })
                 .collect();
-            ObjectInput { name: Some(name.to_owned()), parts }
+            ObjectInput {
+                name: Some(name.to_owned()),
+                parts,
+            }
         })
         .collect();
-    let input = SceneInput { objects, source_name: case.name.clone() };
+    let input = SceneInput {
+        objects,
+        source_name: case.name.clone(),
+    };
     let (scene, _) = SceneBuilder::new(input)
         .grid(Some(1.0))
         .policy(OccluderPolicy::Default)
         .build()
         .unwrap_or_else(|e| panic!("{}: {e}", case.name));
-    scene.sanity_check().unwrap_or_else(|e| panic!("{}: {e}", case.name));
+    scene
+        .sanity_check()
+        .unwrap_or_else(|e| panic!("{}: {e}", case.name));
     scene
 }
 
@@ -54,13 +70,20 @@ fn cell(scene: &Scene, name: &str, min: [i64; 3], max: [i64; 3]) -> ViewCell {
             .snap_with(c.map(|v| v as f64), [Rounding::Nearest; 3])
             .expect("the corpus stays on the grid")
     };
-    ViewCell { name: name.to_owned(), bounds: Aabb::new(snap(min), snap(max)), kind: CellKind::Box }
+    ViewCell {
+        name: name.to_owned(),
+        bounds: Aabb::new(snap(min), snap(max)),
+        kind: CellKind::Box,
+    }
 }
 
 /// What the engine says about a query, in the corpus's words, and why that is wrong, if it is.
 fn judge(scene: &Scene, case: &Case, query: &Query, seed: u64) -> Result<(), String> {
     let baker = Baker::new(scene);
-    let options = BakeOptions { seed, ..BakeOptions::default() };
+    let options = BakeOptions {
+        seed,
+        ..BakeOptions::default()
+    };
     let target = object(scene, &query.to);
     let seen = match &query.from {
         From::Object(name) => {
@@ -74,12 +97,17 @@ fn judge(scene: &Scene, case: &Case, query: &Query, seed: u64) -> Result<(), Str
                         .filter(|&o| o != target && o != from)
                         .collect();
                     let bounds = scene.bounds();
-                    let cell =
-                        ViewCell { name: "pair".into(), bounds, kind: CellKind::Object(from) };
-                    let report =
-                        check_cell(scene, &cell, &[], &others, Accuracy::Exact, &proof);
+                    let cell = ViewCell {
+                        name: "pair".into(),
+                        bounds,
+                        kind: CellKind::Object(from),
+                    };
+                    let report = check_cell(scene, &cell, &[], &others, Accuracy::Exact, &proof);
                     // A pair may touch and be hidden all the same; a cell sees what it touches.
-                    let fault = report.failed.iter().find(|f| !f.contains("touches the cell"));
+                    let fault = report
+                        .failed
+                        .iter()
+                        .find(|f| !f.contains("touches the cell"));
                     if let Some(why) = fault {
                         return Err(format!("the checker refuses the proof: {why}"));
                     }
@@ -92,7 +120,12 @@ fn judge(scene: &Scene, case: &Case, query: &Query, seed: u64) -> Result<(), Str
             let cell = cell(scene, &case.name, *min, *max);
             let result = baker.bake_cell(&cell, &options);
             let report = check_cell(
-                scene, &cell, &result.visible, &result.unknown, result.accuracy, &result.proof,
+                scene,
+                &cell,
+                &result.visible,
+                &result.unknown,
+                result.accuracy,
+                &result.proof,
             );
             if let Some(why) = report.failed.first() {
                 return Err(format!("the checker refuses the result: {why}"));
@@ -113,7 +146,11 @@ fn judge(scene: &Scene, case: &Case, query: &Query, seed: u64) -> Result<(), Str
             }
         }
     };
-    if seen == query.expect { Ok(()) } else { Err(format!("called {seen:?}")) }
+    if seen == query.expect {
+        Ok(())
+    } else {
+        Err(format!("called {seen:?}"))
+    }
 }
 
 fn run(cases: &[Case], variant: &str, failures: &mut Vec<String>) -> usize {
@@ -135,7 +172,12 @@ fn run(cases: &[Case], variant: &str, failures: &mut Vec<String>) -> usize {
 
 fn report(failures: &[String], count: usize) {
     assert!(count > 0);
-    assert!(failures.is_empty(), "{} of {count} verdicts:\n{}", failures.len(), failures.join("\n"));
+    assert!(
+        failures.is_empty(),
+        "{} of {count} verdicts:\n{}",
+        failures.len(),
+        failures.join("\n")
+    );
 }
 
 #[test]
