@@ -500,7 +500,7 @@ fn blocks(question: &Question<'_>, id: PolygonId, s: &Segment) -> Option<bool> {
     if !(-END..=1.0 + END).contains(&t) {
         return None;
     }
-    if t < END || t > 1.0 - END {
+    if !(END..=1.0 - END).contains(&t) {
         let polygon = caster.scene().polygon(id);
         if t < END {
             let inside = crate::line::lies_in(&polygon, &question.from.plane);

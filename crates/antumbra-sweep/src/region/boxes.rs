@@ -180,7 +180,7 @@ impl CellBake<'_> {
             .find(|&id| {
                 let polygon = scene.polygon(id);
                 covers(&polygon, &self.source.hull, targets, behind)
-                    && !(!self.source.plane_blocks && self.hull_in_plane(id))
+                    && (self.source.plane_blocks || !self.hull_in_plane(id))
             })
             .map(|polygon| Reason::Covered { polygon })
     }
