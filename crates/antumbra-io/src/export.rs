@@ -281,6 +281,7 @@ mod tests {
         let plane = [[3, 0, 0], [0, 3, 0], [0, 0, 3]];
         let w = WitnessRecord {
             polygon: 0,
+            source: 0,
             from: [0; 3],
             through: [FINE, FINE, 2 * FINE],
         };
@@ -290,6 +291,7 @@ mod tests {
         assert_eq!(end.to_scene(&grid), [1.375, 0.375, 0.75]);
         let parallel = WitnessRecord {
             polygon: 0,
+            source: 0,
             from: [0; 3],
             through: [1, -1, 0],
         };
@@ -297,6 +299,7 @@ mod tests {
         // Nothing overflows, whatever the file says.
         let wild = WitnessRecord {
             polygon: 0,
+            source: 0,
             from: [i64::MIN; 3],
             through: [i64::MAX; 3],
         };

@@ -25,7 +25,10 @@
 //! # Ok::<(), antumbra_io::ReadError>(())
 //! ```
 
+// With few formats some of the checks have no user.
+#[cfg_attr(not(all(feature = "gltf", feature = "stl")), allow(dead_code))]
 mod bytes;
+#[cfg_attr(not(all(feature = "gltf", feature = "stl")), allow(dead_code))]
 mod error;
 mod format;
 mod read;

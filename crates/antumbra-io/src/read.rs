@@ -102,31 +102,7 @@ fn parse(
         ));
     }
     let format = Format::recognize(bytes, file).ok_or_else(|| unknown(bytes))?;
-    let scene = match format {
-        #[cfg(feature = "gltf")]
-        Format::Glb => crate::gltf::read_glb(bytes, resolve)?,
-        #[cfg(feature = "gltf")]
-        Format::Gltf => crate::gltf::read_gltf(bytes, resolve)?,
-        #[cfg(feature = "obj")]
-        Format::Obj => crate::obj::read(bytes, up)?,
-        #[cfg(feature = "ply")]
-        Format::Ply => crate::ply::read(bytes, up)?,
-        #[cfg(feature = "stl")]
-        Format::Stl => crate::stl::read(bytes, up)?,
-        #[allow(
-            unreachable_patterns,
-            reason = "reachable when a format's feature is off"
-        )]
-        _ => {
-            let _ = (up, &resolve);
-            let found = format!("this is {}, which this build cannot read", format.name());
-            return Err(Damage::new(
-                Place::Whole,
-                found,
-                "enable the cargo feature of that format",
-            ));
-        }
-    };
+    let scene = read_as(format, bytes, up, resolve)?;
     let has_faces = |part: &antumbra_scene::PartInput| !part.faces.is_empty();
     if !scene
         .objects
@@ -140,6 +116,39 @@ fn parse(
         ));
     }
     Ok(scene)
+}
+
+fn read_as(
+    format: Format,
+    bytes: &[u8],
+    up: Up,
+    resolve: &mut Resolver<'_>,
+) -> Result<SceneInput, Damage> {
+    match format {
+        #[cfg(feature = "gltf")]
+        Format::Glb => crate::gltf::read_glb(bytes, resolve),
+        #[cfg(feature = "gltf")]
+        Format::Gltf => crate::gltf::read_gltf(bytes, resolve),
+        #[cfg(feature = "obj")]
+        Format::Obj => crate::obj::read(bytes, up),
+        #[cfg(feature = "ply")]
+        Format::Ply => crate::ply::read(bytes, up),
+        #[cfg(feature = "stl")]
+        Format::Stl => crate::stl::read(bytes, up),
+        #[allow(
+            unreachable_patterns,
+            reason = "reachable when a format's feature is off"
+        )]
+        _ => {
+            let _ = (bytes, up, &resolve);
+            let found = format!("this is {}, which this build cannot read", format.name());
+            Err(Damage::new(
+                Place::Whole,
+                found,
+                "enable the cargo feature of that format",
+            ))
+        }
+    }
 }
 
 /// Most bytes that a compressed file may unpack to.

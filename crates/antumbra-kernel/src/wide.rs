@@ -183,6 +183,8 @@ fn pow2(e: i32) -> f64 {
 
 impl<const N: usize> std::ops::Add for Int<N> {
     type Output = Self;
+    // A carry is the union of two carries that exclude each other.
+    #[allow(clippy::suspicious_arithmetic_impl)]
     #[inline]
     fn add(self, other: Self) -> Self {
         let mut out = [0_u64; N];
@@ -214,6 +216,7 @@ impl<const N: usize> std::ops::Neg for Int<N> {
 
 impl<const N: usize> std::ops::Sub for Int<N> {
     type Output = Self;
+    #[allow(clippy::suspicious_arithmetic_impl)]
     #[inline]
     fn sub(self, other: Self) -> Self {
         let mut out = [0_u64; N];

@@ -84,7 +84,8 @@ pub fn start_halfspaces(
         .map(|&p| to.plane.side(p).flip())
         .collect();
     let (far_index, far) = most(&to.corners, |p| from.plane.evaluate(p)).ok_or(ConeError::Flat)?;
-    let (near_index, near) = most(&from.corners, |p| -to.plane.evaluate(p)).ok_or(ConeError::Flat)?;
+    let (near_index, near) =
+        most(&from.corners, |p| -to.plane.evaluate(p)).ok_or(ConeError::Flat)?;
     if !from.plane.side(far).is_positive() || !to.plane.side(near).is_negative() {
         return Err(ConeError::Flat);
     }

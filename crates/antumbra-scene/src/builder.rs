@@ -23,7 +23,7 @@ use rayon::prelude::*;
 pub use error::BuildError;
 
 use crate::input::{ObjectInput, OccluderPolicy, SceneInput};
-use crate::kd::{KdHeuristic, KdTree};
+use crate::kd::{KdHeuristic, KdTree, Shape};
 use crate::report::{BuildReport, ObjectRepairs, RepairCounts};
 use crate::scene::{Object, ObjectId, Scene};
 use clean::{Cleaned, Patch};
@@ -81,7 +81,7 @@ impl SceneBuilder {
         self
     }
 
-    /// Which parts block lines.
+    /// Which parts are occluders.
     #[must_use]
     pub fn policy(mut self, policy: OccluderPolicy) -> Self {
         self.policy = policy;
@@ -334,7 +334,14 @@ fn assemble(
             )
         })
         .collect();
-    let kd = KdTree::build(&boxes, heuristic);
+    let shape = |i: u32| {
+        let i = i as usize;
+        Some(Shape {
+            corners: &corners[first[i] as usize..first[i + 1] as usize],
+            plane: &planes[i],
+        })
+    };
+    let kd = KdTree::build(&boxes, shape, heuristic);
     let bounds = kd.bounds();
     Ok((
         Scene {

@@ -101,7 +101,7 @@ impl FromIterator<[u32; 3]> for Faces {
     }
 }
 
-/// Which polygons block lines. Ignoring an occluder is always safe: what it would have hidden
+/// Which polygons are occluders. Ignoring an occluder is always safe: what it would have hidden
 /// stays visible.
 ///
 /// A part without a class has the empty class `""`.
@@ -117,7 +117,7 @@ pub enum OccluderPolicy {
 }
 
 impl OccluderPolicy {
-    /// Whether a part with this class and material blocks lines. Classes are compared without case.
+    /// Whether a part with this class and material occludes. Classes are compared without case.
     ///
     /// ```
     /// use antumbra_scene::OccluderPolicy;

@@ -2,17 +2,20 @@
 //!
 //! Splits lie on grid values. A polygon goes to the lower child if a part of its bounding box lies
 //! strictly below the split plane, and to the upper child if a part lies strictly above; one that
-//! straddles goes to both, one that lies flat in the split plane goes to the lower child only. So
-//! every polygon lies in the union of the *closed* boxes of the leaves that list it, and a
-//! traversal that enters every closed box it meets misses nothing.
+//! straddles goes to both, unless the polygon itself misses one of the closed boxes, and one that
+//! lies flat in the split plane goes to the lower child only. So every polygon lies in the union of
+//! the *closed* boxes of the leaves that list it, and a traversal that enters every closed box it
+//! meets misses nothing.
 
 mod build;
+mod meets;
 
 use antumbra_kernel::{Aabb, Point};
 
 use crate::PolygonId;
 
 pub use build::KdHeuristic;
+pub(crate) use meets::Shape;
 
 /// A kD-tree whose leaves list polygons; a polygon that straddles a split is listed on both sides.
 #[derive(Clone, Debug)]
@@ -55,9 +58,14 @@ pub struct KdBox {
 }
 
 impl KdTree {
-    /// Builds the tree over the boxes of polygons 0, 1, 2, ...
-    pub(crate) fn build(boxes: &[Aabb], heuristic: KdHeuristic) -> Self {
-        build::build(boxes, heuristic)
+    /// Builds the tree over polygons 0, 1, 2, ... with these bounding boxes and shapes. A polygon
+    /// without a shape counts as its box.
+    pub(crate) fn build<'a>(
+        boxes: &[Aabb],
+        shapes: impl Fn(u32) -> Option<Shape<'a>>,
+        heuristic: KdHeuristic,
+    ) -> Self {
+        build::build(boxes, shapes, heuristic)
     }
 
     /// The box of the root.
@@ -229,14 +237,19 @@ impl SeenPolygons {
     }
 }
 
-/// What must hold for a tree over some boxes; the first violation as a sentence.
-pub(crate) fn check(tree: &KdTree, boxes: &[Aabb]) -> Result<(), String> {
+/// What must hold for a tree over some boxes and shapes; the first violation as a sentence.
+pub(crate) fn check<'a>(
+    tree: &KdTree,
+    boxes: &[Aabb],
+    shapes: impl Fn(u32) -> Option<Shape<'a>>,
+) -> Result<(), String> {
     let mut listed = vec![0_u32; boxes.len()];
     let mut stack = vec![(tree.root(), (0..boxes.len() as u32).collect::<Vec<u32>>())];
     let mut visited = 0;
-    while let Some((here, due)) = stack.pop() {
+    while let Some((here, mut due)) = stack.pop() {
         visited += 1;
         let Some(children) = tree.children(&here) else {
+            due.retain(|&i| shapes(i).is_none_or(|shape| shape.meets(&here.bounds)));
             let items: Vec<u32> = tree.items(here.node).iter().map(|id| id.0).collect();
             if items != due {
                 return Err(format!(
@@ -309,13 +322,13 @@ mod tests {
         #[test]
         fn every_box_is_where_it_belongs(list in prop_oneof![boxes(8, 60), boxes(1000, 600)], minimal: bool) {
             let heuristic = if minimal { KdHeuristic::MinimalSplit } else { KdHeuristic::SurfaceArea };
-            let tree = KdTree::build(&list, heuristic);
-            prop_assert_eq!(check(&tree, &list), Ok(()));
+            let tree = KdTree::build(&list, |_| None, heuristic);
+            prop_assert_eq!(check(&tree, &list, |_| None), Ok(()));
         }
 
         #[test]
         fn a_box_query_misses_nothing(list in boxes(12, 80), query in boxes(12, 2)) {
-            let tree = KdTree::build(&list, KdHeuristic::SurfaceArea);
+            let tree = KdTree::build(&list, |_| None, KdHeuristic::SurfaceArea);
             let mut seen = SeenPolygons::new();
             for q in query {
                 let mut found = vec![0; list.len()];
@@ -341,8 +354,8 @@ mod tests {
     #[test]
     fn identical_boxes_end_in_one_leaf() {
         let b = Aabb::new(Point::new(0, 0, 0), Point::new(9, 9, 9));
-        let tree = KdTree::build(&vec![b; 100], KdHeuristic::SurfaceArea);
-        assert_eq!(check(&tree, &vec![b; 100]), Ok(()));
+        let tree = KdTree::build(&[b; 100], |_| None, KdHeuristic::SurfaceArea);
+        assert_eq!(check(&tree, &[b; 100], |_| None), Ok(()));
         assert_eq!(tree.nodes().len(), 1);
     }
 }

@@ -9,6 +9,7 @@ mod kd;
 mod meet;
 mod report;
 mod scene;
+pub mod synth;
 mod target_tree;
 
 pub use builder::{BuildError, SceneBuilder};

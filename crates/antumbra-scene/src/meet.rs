@@ -48,7 +48,10 @@ pub fn polygons_touch(a: &PolygonRef<'_>, b: &PolygonRef<'_>) -> bool {
     if !a.bounds().touches(&b.bounds()) {
         return false;
     }
-    let mut axes = vec![a.plane.normal.map(i128::from), b.plane.normal.map(i128::from)];
+    let mut axes = vec![
+        a.plane.normal.map(i128::from),
+        b.plane.normal.map(i128::from),
+    ];
     for u in edges(a.corners) {
         axes.push(wide_cross(a.plane.normal, u));
         for v in edges(b.corners) {
@@ -70,7 +73,11 @@ fn edges(corners: &[Point]) -> impl Iterator<Item = [i64; 3]> + '_ {
 
 fn wide_cross(n: [i64; 3], e: [i64; 3]) -> [i128; 3] {
     let (n, e) = (n.map(i128::from), e.map(i128::from));
-    [n[1] * e[2] - n[2] * e[1], n[2] * e[0] - n[0] * e[2], n[0] * e[1] - n[1] * e[0]]
+    [
+        n[1] * e[2] - n[2] * e[1],
+        n[2] * e[0] - n[0] * e[2],
+        n[0] * e[1] - n[1] * e[0],
+    ]
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -115,17 +122,38 @@ mod tests {
     }
 
     fn polygon<'a>(corners: &'a [Point], plane: &'a Plane) -> PolygonRef<'a> {
-        PolygonRef { id: PolygonId(0), object: ObjectId(0), corners, plane, occludes: true }
+        PolygonRef {
+            id: PolygonId(0),
+            object: ObjectId(0),
+            corners,
+            plane,
+            occludes: true,
+        }
     }
 
     #[test]
     fn a_flush_wall_touches_and_a_diagonal_one_may_miss() {
         let p = Point::new;
-        assert_eq!(contact(&[p(10, 0, 0), p(10, 9, 0), p(10, 9, 9)]), BoxContact::Touches);
-        assert_eq!(contact(&[p(21, 0, -5), p(0, 21, -5), p(0, 21, 15)]), BoxContact::Apart);
-        assert_eq!(contact(&[p(20, 0, -5), p(0, 20, -5), p(0, 20, 15)]), BoxContact::Touches);
-        assert_eq!(contact(&[p(19, 0, -5), p(0, 19, -5), p(0, 19, 15)]), BoxContact::Enters);
-        assert_eq!(contact(&[p(-50, -50, 5), p(50, -50, 5), p(0, 90, 5)]), BoxContact::Enters);
+        assert_eq!(
+            contact(&[p(10, 0, 0), p(10, 9, 0), p(10, 9, 9)]),
+            BoxContact::Touches
+        );
+        assert_eq!(
+            contact(&[p(21, 0, -5), p(0, 21, -5), p(0, 21, 15)]),
+            BoxContact::Apart
+        );
+        assert_eq!(
+            contact(&[p(20, 0, -5), p(0, 20, -5), p(0, 20, 15)]),
+            BoxContact::Touches
+        );
+        assert_eq!(
+            contact(&[p(19, 0, -5), p(0, 19, -5), p(0, 19, 15)]),
+            BoxContact::Enters
+        );
+        assert_eq!(
+            contact(&[p(-50, -50, 5), p(50, -50, 5), p(0, 90, 5)]),
+            BoxContact::Enters
+        );
     }
 
     #[test]

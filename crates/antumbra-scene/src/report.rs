@@ -19,7 +19,7 @@ pub struct BuildReport {
     pub faces: usize,
     /// How many polygons the scene has.
     pub polygons: usize,
-    /// How many of them block lines.
+    /// How many of them are occluders.
     pub occluders: usize,
     /// The objects to which something happened beyond snapping and merging, by id.
     pub repairs: Vec<ObjectRepairs>,

@@ -38,7 +38,7 @@ pub struct Object {
     /// The name in the file, or the decimal id where the file has none. Need not be unique.
     pub name: String,
     /// The class of its first part, as written in the file. Parts may differ: whether a polygon
-    /// blocks lines is said by [`PolygonRef::occludes`].
+    /// is an occluder is said by [`PolygonRef::occludes`].
     pub class: Option<String>,
     /// Its polygons, as a range of [`PolygonId`]s; may be empty.
     pub polygons: Range<u32>,
@@ -57,7 +57,7 @@ pub struct PolygonRef<'a> {
     /// its first non-zero component positive: polygons are coplanar if and only if their planes
     /// are equal.
     pub plane: &'a Plane,
-    /// Whether it blocks lines.
+    /// Whether it is an occluder.
     pub occludes: bool,
 }
 

@@ -57,13 +57,23 @@ impl TargetTree {
                     let polygon = PolygonId(p);
                     let bounds = scene.polygon(polygon).bounds();
                     let kind = TargetKind::Polygon(polygon);
-                    nodes.push(TargetNode { bounds, object: Some(id), kind });
-                    Item { bounds, node: nodes.len() as u32 - 1 }
+                    nodes.push(TargetNode {
+                        bounds,
+                        object: Some(id),
+                        kind,
+                    });
+                    Item {
+                        bounds,
+                        node: nodes.len() as u32 - 1,
+                    }
                 })
                 .collect();
             let root = build(&mut nodes, &mut items, Some(id));
             if let Some(root) = root {
-                objects.push(Item { bounds: nodes[root as usize].bounds, node: root });
+                objects.push(Item {
+                    bounds: nodes[root as usize].bounds,
+                    node: root,
+                });
             }
             roots.push(root);
         }
@@ -98,8 +108,14 @@ fn build(nodes: &mut Vec<TargetNode>, items: &mut [Item], object: Option<ObjectI
             let at = partition(items);
             let (a, b) = items.split_at_mut(at);
             let (left, right) = (build(nodes, a, object)?, build(nodes, b, object)?);
-            let bounds = nodes[left as usize].bounds.union(nodes[right as usize].bounds);
-            nodes.push(TargetNode { bounds, object, kind: TargetKind::Inner(left, right) });
+            let bounds = nodes[left as usize]
+                .bounds
+                .union(nodes[right as usize].bounds);
+            nodes.push(TargetNode {
+                bounds,
+                object,
+                kind: TargetKind::Inner(left, right),
+            });
             Some(nodes.len() as u32 - 1)
         }
     }
@@ -123,7 +139,8 @@ fn partition(items: &mut [Item]) -> usize {
     if width == 0 {
         return items.len() / 2;
     }
-    let bin = |b: &Aabb| ((b.center_doubled()[axis] - lo[axis]) * BINS as i64 / (width + 1)) as usize;
+    let bin =
+        |b: &Aabb| ((b.center_doubled()[axis] - lo[axis]) * BINS as i64 / (width + 1)) as usize;
     let mut boxes: [Option<Aabb>; BINS] = [None; BINS];
     let mut counts = [0_usize; BINS];
     for item in items.iter() {
@@ -134,7 +151,9 @@ fn partition(items: &mut [Item]) -> usize {
     let best = (1..BINS)
         .filter(|&s| counts[..s].iter().sum::<usize>() > 0 && counts[s..].iter().sum::<usize>() > 0)
         .min_by(|&s, &t| cost(&boxes, &counts, s).total_cmp(&cost(&boxes, &counts, t)));
-    let Some(best) = best else { return items.len() / 2 };
+    let Some(best) = best else {
+        return items.len() / 2;
+    };
     items.sort_by_key(|i| bin(&i.bounds) >= best);
     items.iter().take_while(|i| bin(&i.bounds) < best).count()
 }

@@ -100,7 +100,7 @@ pub(crate) fn blocker_cones(
     let mut rows = Vec::with_capacity(polygon.corners.len() + 2);
     let n = polygon.corners.len();
     let behind =
-        |s: Sign, t: Sign| !s.is_positive() && !t.is_positive() && !(s.is_zero() && t.is_zero());
+        |s: Sign, t: Sign| !(s.is_positive() || t.is_positive() || s.is_zero() && t.is_zero());
     for i in 0..n {
         let j = (i + 1) % n;
         if behind(front[i], front[j]) || behind(before[i], before[j]) {

@@ -54,9 +54,9 @@ pub(crate) enum Meeting {
 
 /// An oriented line through two different fine points.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FineLine {
-    pub u: FinePoint,
-    pub v: FinePoint,
+pub struct FineLine {
+    pub(crate) u: FinePoint,
+    pub(crate) v: FinePoint,
     d: [i128; 3],
     m: [i128; 3],
 }
@@ -69,6 +69,16 @@ pub(crate) struct Position {
 }
 
 impl Position {
+    /// The first point of the line.
+    pub(crate) const START: Self = Self { p: 0, q: -1 };
+    /// The second point of the line.
+    pub(crate) const END: Self = Self { p: 1, q: 0 };
+
+    /// Where a linear function with these values at both points is zero; they differ.
+    pub(crate) fn new(p: i128, q: i128) -> Self {
+        Self { p, q }
+    }
+
     /// Exact comparison along the line.
     pub(crate) fn compare(&self, other: &Self) -> Ordering {
         // p/(p-q) against r/(r-s): both denominators brought to positive signs.
@@ -94,8 +104,9 @@ impl Position {
 }
 
 impl FineLine {
-    /// `None` if the points coincide.
-    pub(crate) fn new(u: FinePoint, v: FinePoint) -> Option<Self> {
+    /// The line from u to v; `None` if the points coincide.
+    #[must_use]
+    pub fn new(u: FinePoint, v: FinePoint) -> Option<Self> {
         let (a, b) = (u.0.map(i128::from), v.0.map(i128::from));
         let d = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
         let m = [
@@ -104,6 +115,15 @@ impl FineLine {
             a[0] * b[1] - a[1] * b[0],
         ];
         (u != v).then_some(Self { u, v, d, m })
+    }
+
+    /// Where the line crosses a plane, rounded to fractional grid coordinates for output; `None`
+    /// if it is parallel to the plane.
+    #[must_use]
+    pub fn at_plane(&self, plane: &Plane) -> Option<[f64; 3]> {
+        let t = self.position(plane)?.to_f64();
+        let (u, v) = (self.u.to_f64(), self.v.to_f64());
+        Some(std::array::from_fn(|k| u[k] + t * (v[k] - u[k])))
     }
 
     /// The side of an edge: the row's moment part meets the direction, which is short of one

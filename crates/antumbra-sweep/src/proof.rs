@@ -329,7 +329,10 @@ impl Reader<'_> {
                         negative,
                     },
                     CHORD => {
-                        let row = RowName::Chord { from: self.index()?, to: self.index()? };
+                        let row = RowName::Chord {
+                            from: self.index()?,
+                            to: self.index()?,
+                        };
                         Node::Split { row, negative }
                     }
                     _ => return Err(self.error("an unknown node kind")),

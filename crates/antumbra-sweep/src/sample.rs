@@ -7,6 +7,9 @@ use crate::random::Random;
 /// Draws lines from one cone.
 pub(crate) struct Sampler {
     rays: Vec<[f64; 6]>,
+    /// Factors that give all rays directions of like length, so that a sum of them lies in the
+    /// middle in space and not only in Plücker space.
+    balance: Vec<f64>,
 }
 
 /// The Plücker quadric, twice: d . m + m . d.
@@ -36,18 +39,31 @@ fn norm(v: &[f64; 6]) -> f64 {
 
 impl Sampler {
     pub(crate) fn new(space: &PluckerSpace, cone: &Cone) -> Self {
-        Self {
-            rays: cone.vertices().map(|v| *space.rounded_vertex(v)).collect(),
-        }
+        let rays: Vec<[f64; 6]> = cone.vertices().map(|v| *space.rounded_vertex(v)).collect();
+        let lengths: Vec<f64> = rays
+            .iter()
+            .map(|r| r[0].abs().max(r[1].abs()).max(r[2].abs()))
+            .collect();
+        let longest = lengths.iter().fold(0.0, |m: f64, &l| m.max(l));
+        // Rays with next to no direction are imaginary: they keep a bounded factor.
+        let balance = lengths
+            .iter()
+            .map(|&l| longest / l.max(longest / (1_u64 << 40) as f64))
+            .collect();
+        Self { rays, balance }
     }
 
-    /// A random point of the cone; a higher `spread` stays closer to single rays.
+    /// A random point of the cone; a higher `spread` stays closer to single rays, an odd one
+    /// balances their directions.
     fn point(&self, rng: &mut Random, spread: u32) -> [f64; 6] {
         let mut out = [0.0; 6];
-        for ray in &self.rays {
+        for (ray, balance) in self.rays.iter().zip(&self.balance) {
             let mut w = rng.unit() + 1e-3;
-            for _ in 0..spread {
+            for _ in 0..spread / 2 {
                 w *= w;
+            }
+            if spread % 2 == 1 {
+                w *= balance;
             }
             for k in 0..6 {
                 out[k] += w * ray[k];
@@ -58,7 +74,7 @@ impl Sampler {
 
     /// Up to `count` real lines, as directions and moments.
     pub(crate) fn lines(
-        &mut self,
+        &self,
         rng: &mut Random,
         count: usize,
         out: &mut Vec<([f64; 3], [f64; 3])>,
@@ -69,7 +85,7 @@ impl Sampler {
     /// A few lines of a cone whose real lines are hard to hit: starts from points of either sign
     /// on edges and moves them inside as far as the sign allows.
     pub(crate) fn persist(
-        &mut self,
+        &self,
         rng: &mut Random,
         count: usize,
         out: &mut Vec<([f64; 3], [f64; 3])>,
@@ -125,7 +141,8 @@ impl Sampler {
 
     /// Moves a point towards a random inner one, as far as the quadric keeps its sign.
     fn move_inside(&self, p: &[f64; 6], sign: f64, rng: &mut Random) -> Option<[f64; 6]> {
-        let mut inner = self.point(rng, 1);
+        let spread = (rng.bits() % 4) as u32;
+        let mut inner = self.point(rng, spread);
         let scale = norm(p) / norm(&inner);
         inner = inner.map(|c| c * scale);
         let mut step = 0.5;
@@ -139,8 +156,28 @@ impl Sampler {
         None
     }
 
+    /// The real lines on all segments between two rays: the extremal lines and some more.
+    pub(crate) fn extremal(&self) -> Vec<([f64; 3], [f64; 3])> {
+        let mut out = Vec::new();
+        for (i, v) in self.rays.iter().enumerate() {
+            let q = quadric(v);
+            if bounded(v, v).0.abs() <= bounded(v, v).1 {
+                out.push(([v[0], v[1], v[2]], [v[3], v[4], v[5]]));
+            }
+            for w in &self.rays[i + 1..] {
+                let r = quadric(w);
+                if q > 0.0 && r < 0.0 {
+                    out.push(root(v, w));
+                } else if q < 0.0 && r > 0.0 {
+                    out.push(root(w, v));
+                }
+            }
+        }
+        out
+    }
+
     fn draw(
-        &mut self,
+        &self,
         rng: &mut Random,
         count: usize,
         tries: usize,
@@ -152,7 +189,7 @@ impl Sampler {
             if out.len() >= count {
                 return;
             }
-            let p = self.point(rng, (i % 4) as u32);
+            let p = self.point(rng, (i % 6) as u32);
             let q = quadric(&p);
             if q >= 0.0 {
                 positive = Some(p);

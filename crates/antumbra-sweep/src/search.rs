@@ -8,6 +8,7 @@
 
 use std::collections::HashMap;
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use antumbra_lines::{
     Cone, ConeError, Gate, Halfspace, PluckerSpace, RealLines, Split, real_lines, start_halfspaces,
@@ -15,11 +16,12 @@ use antumbra_lines::{
 use antumbra_scene::PolygonId;
 
 use crate::blocker::{BlockerCone, RowName, blocker_cones};
-use crate::caster::{Caster, Segment};
+use crate::caster::{Caster, SAMPLING_SLACK, Segment};
 use crate::line::{Between, FineLine, FinePoint, Meeting, obstacle};
 use crate::proof::{Node, Tree};
 use crate::random::Random;
 use crate::sample::Sampler;
+use crate::size::size_below;
 
 /// One question: is a line free from one gate to another?
 pub(crate) struct Question<'a> {
@@ -30,6 +32,10 @@ pub(crate) struct Question<'a> {
     pub source_plane_blocks: bool,
     /// Polygons that take no part.
     pub absent: &'a Range<u32>,
+    /// Ignore sets of lines below this angle in radians.
+    pub ignore_below: Option<f64>,
+    /// Set to stop.
+    pub cancel: Option<&'a AtomicBool>,
     /// Whether an answer *open* must carry an exactly verified line.
     pub exact_witness: bool,
 }
@@ -87,6 +93,8 @@ pub(crate) struct Searcher {
 
 /// How many recent blockers are tried before the scene is asked.
 const RECENT: usize = 12;
+/// Draws of lines from a cone before it is given up as too thin for doubles.
+const PATIENCE: usize = 50;
 /// Lines sampled in a cone.
 const SAMPLES: usize = 12;
 
@@ -135,7 +143,10 @@ impl Searcher {
             Err(ConeError::Flat) => return Answer::NoLines,
             Err(_) => return Answer::Undecided(Undecided::Thin),
         };
-        let mut frame = Frame { question, cones: HashMap::new() };
+        let mut frame = Frame {
+            question,
+            cones: HashMap::new(),
+        };
         let mut slots = vec![Slot::Open];
         let mut stack = Vec::new();
         match start.chord {
@@ -145,9 +156,19 @@ impl Searcher {
                 Err(_) => return Answer::Undecided(Undecided::Thin),
             },
             Some(chord) => {
-                let row = RowName::Chord { from: chord.from, to: chord.to };
-                let node = Node::Split { row, negative: false };
-                slots[0] = Slot::Split { node, inside: 1, outside: 2 };
+                let row = RowName::Chord {
+                    from: chord.from,
+                    to: chord.to,
+                };
+                let node = Node::Split {
+                    row,
+                    negative: false,
+                };
+                slots[0] = Slot::Split {
+                    node,
+                    inside: 1,
+                    outside: 2,
+                };
                 for (slot, h) in [(1, chord.halfspace), (2, chord.halfspace.opposite())] {
                     let mut halfspaces = start.halfspaces.clone();
                     halfspaces.push(h);
@@ -168,7 +189,8 @@ impl Searcher {
                 Ok(()) => {}
                 Err(answer) => return answer,
             }
-            if self.work.splits > limit {
+            let stopped = question.cancel.is_some_and(|c| c.load(Ordering::Relaxed));
+            if self.work.splits > limit || stopped {
                 return Answer::Undecided(Undecided::Budget);
             }
         }
@@ -198,18 +220,30 @@ impl Searcher {
             slots[slot] = Slot::Done(Node::Imaginary);
             return Ok(());
         }
-        let mut sampler = Sampler::new(&self.space, &cone);
+        let sampler = Sampler::new(&self.space, &cone);
+        if let Some(angle) = frame.question.ignore_below
+            && size_below(&self.space, &cone, &sampler, frame.question.from, angle)
+        {
+            slots[slot] = Slot::Done(Node::Ignored);
+            return Ok(());
+        }
+        // Nearly always the first draw decides. In thin cones lines may lose their place when they
+        // are rounded to fine points; others keep it.
         let mut lines = Vec::with_capacity(SAMPLES);
-        sampler.lines(rng, SAMPLES, &mut lines);
-        if lines.len() < SAMPLES / 2 {
-            sampler.persist(rng, SAMPLES / 2, &mut lines);
+        for _ in 0..PATIENCE {
+            lines.clear();
+            sampler.lines(rng, SAMPLES, &mut lines);
+            if lines.len() < SAMPLES / 2 {
+                sampler.persist(rng, SAMPLES / 2, &mut lines);
+            }
+            self.work.samples += lines.len() as u64;
+            match self.choose(frame, &cone, &lines) {
+                Ok(blocker) => return self.subtract(frame, cone, slot, slots, stack, blocker),
+                Err(Answer::Undecided(Undecided::Thin)) => {}
+                Err(answer) => return Err(answer),
+            }
         }
-        if lines.is_empty() {
-            return Err(Answer::Undecided(Undecided::Thin));
-        }
-        self.work.samples += lines.len() as u64;
-        let blocker = self.choose(frame, &cone, &lines)?;
-        self.subtract(frame, cone, slot, slots, stack, blocker)
+        Err(Answer::Undecided(Undecided::Thin))
     }
 
     /// The occluder that blocks most sampled lines, with the direction in which it is crossed; or
@@ -221,46 +255,39 @@ impl Searcher {
         lines: &[([f64; 3], [f64; 3])],
     ) -> Result<(PolygonId, bool), Answer> {
         let question = frame.question;
-        let mut tally = Tally::default();
         let segments: Vec<Segment> = lines
             .iter()
             .filter_map(|(d, m)| between_gates(d, m, question))
             .collect();
-        let mut blocked = vec![false; segments.len()];
-        for &id in &self.recent {
-            for (i, s) in segments.iter().enumerate() {
-                if let Some(negative) = blocks(question, id, s) {
-                    tally.add(id, negative);
-                    blocked[i] = true;
+        // Known blockers first: the scene is asked only about lines that none of them blocks.
+        let mut tally = Tally::default();
+        let mut candidates: Vec<(PolygonId, usize)> =
+            self.recent.iter().map(|&id| (id, segments.len())).collect();
+        for (i, s) in segments.iter().enumerate() {
+            let mut any = false;
+            for (id, _) in &candidates {
+                if let Some(negative) = blocks(question, *id, s) {
+                    tally.add(*id, negative);
+                    any = true;
                 }
             }
-        }
-        if let Some((id, negative, count)) = tally.best(&[])
-            && count as usize == segments.len()
-        {
-            return Ok((id, negative));
-        }
-        let mut refused: Vec<(PolygonId, bool)> = Vec::new();
-        for (i, s) in segments.iter().enumerate() {
-            if blocked[i] {
+            if any {
                 continue;
             }
-            let mut any = false;
-            question.caster.visit(
-                s,
-                (-1e-9, 1.0 + 1e-9),
-                crate::caster::SAMPLING_SLACK,
-                |items, _, _| {
+            question
+                .caster
+                .visit(s, (-1e-9, 1.0 + 1e-9), SAMPLING_SLACK, |items, _, _| {
                     for &id in items {
-                        if let Some(negative) = blocks(question, id, s) {
+                        if candidates.iter().all(|c| c.0 != id)
+                            && let Some(negative) = blocks(question, id, s)
+                        {
                             any = true;
-                            // Once a line: a straddling polygon stands in several leaves.
-                            tally.add_once(id, negative, i as u32);
+                            tally.add(id, negative);
+                            candidates.push((id, i));
                         }
                     }
                     std::ops::ControlFlow::Continue(())
-                },
-            );
+                });
             if any {
                 continue;
             }
@@ -274,6 +301,17 @@ impl Searcher {
                 Err(None) => {}
             }
         }
+        // Late candidates have not seen the earlier lines yet.
+        for &(id, found) in &candidates {
+            if found < segments.len() {
+                for s in &segments[..found] {
+                    if let Some(negative) = blocks(question, id, s) {
+                        tally.add(id, negative);
+                    }
+                }
+            }
+        }
+        let mut refused: Vec<(PolygonId, bool)> = Vec::new();
         loop {
             let Some((id, negative, _)) = tally.best(&refused) else {
                 return Err(Answer::Undecided(Undecided::Thin));
@@ -401,22 +439,14 @@ impl Searcher {
 /// Votes of sampled lines for occluders.
 #[derive(Default)]
 struct Tally {
-    votes: Vec<(PolygonId, bool, u32, u32)>,
+    votes: Vec<(PolygonId, bool, u32)>,
 }
 
 impl Tally {
     fn add(&mut self, id: PolygonId, negative: bool) {
-        self.add_once(id, negative, u32::MAX);
-    }
-
-    fn add_once(&mut self, id: PolygonId, negative: bool, line: u32) {
         match self.votes.iter_mut().find(|v| v.0 == id && v.1 == negative) {
-            Some(v) if line != u32::MAX && v.3 == line => {}
-            Some(v) => {
-                v.2 += 1;
-                v.3 = line;
-            }
-            None => self.votes.push((id, negative, 1, line)),
+            Some(v) => v.2 += 1,
+            None => self.votes.push((id, negative, 1)),
         }
     }
 
@@ -470,7 +500,7 @@ fn blocks(question: &Question<'_>, id: PolygonId, s: &Segment) -> Option<bool> {
     if !(-END..=1.0 + END).contains(&t) {
         return None;
     }
-    if t < END || t > 1.0 - END {
+    if !(END..=1.0 - END).contains(&t) {
         let polygon = caster.scene().polygon(id);
         if t < END {
             let inside = crate::line::lies_in(&polygon, &question.from.plane);

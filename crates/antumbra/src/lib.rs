@@ -1,1 +1,12 @@
-//! Placeholder.
+//! *What can be seen from here?* Exact visibility in polygonal scenes, with a certificate for
+//! every answer.
+//!
+//! The scene is snapped once to an integer grid; everything after is exact. See [`region`] for
+//! potentially visible sets, [`pair`] for two polygons, objects or points, [`ray`](mod@ray) for one line.
+
+pub mod pair;
+pub mod ray;
+pub mod region;
+
+pub use antumbra_kernel as kernel;
+pub use antumbra_scene as scene;

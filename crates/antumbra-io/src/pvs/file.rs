@@ -209,7 +209,9 @@ impl PvsFile {
     /// # Errors
     /// If there is no such cell, or its bytes were altered.
     pub fn visible(&self, cell: CellIndex) -> Result<RoaringBitmap, PvsError> {
-        Ok(self.bitmaps(cell)?.visible)
+        let bytes = self.block(Section::Bitmaps, &self.row(cell)?.bitmaps, cell)?;
+        record::decode_visible(bytes, self.names.len())
+            .ok_or_else(|| self.damaged(cell, "its bitmaps are damaged"))
     }
 
     /// The objects that touch a cell; all of them are in [`PvsFile::visible`].

@@ -83,6 +83,8 @@ pub struct VisibleRecord {
 pub struct WitnessRecord {
     /// The polygon it ends on.
     pub polygon: u32,
+    /// Which part of the source it leaves, as the certificates number them.
+    pub source: u32,
     /// Where it starts.
     pub from: [i64; 3],
     /// Another point of its line.

@@ -8,7 +8,7 @@ use super::model::{CellRecord, PvsHeader, WitnessRecord};
 use crate::bytes::Cursor;
 
 /// Bytes of a witness before compression.
-const WITNESS: usize = 56;
+const WITNESS: usize = 60;
 /// Strong enough for the many equal high bytes; more gained less than 2 %.
 const LEVEL: i32 = 6;
 
@@ -77,23 +77,35 @@ pub(super) fn encode_bitmaps(record: &CellRecord) -> Vec<u8> {
 
 /// The bitmaps, or `None` if the bytes are damaged or name an object that does not exist.
 pub(super) fn decode_bitmaps(bytes: &[u8], objects: usize) -> Option<Bitmaps> {
-    let mut cursor = Cursor::new(bytes);
-    let lengths = [cursor.u32()?, cursor.u32()?, cursor.u32()?];
-    let mut next = |length: u32| {
-        let mut body = cursor.take(length as usize)?;
-        let bitmap = RoaringBitmap::deserialize_from(&mut body).ok()?;
-        let in_range = bitmap.max().is_none_or(|max| (max as usize) < objects);
-        (body.is_empty() && in_range).then_some(bitmap)
-    };
+    let [visible, touching, unknown] = split(bytes)?;
     let bitmaps = Bitmaps {
-        visible: next(lengths[0])?,
-        touching: next(lengths[1])?,
-        unknown: next(lengths[2])?,
+        visible: bitmap(visible, objects)?,
+        touching: bitmap(touching, objects)?,
+        unknown: bitmap(unknown, objects)?,
     };
     let nested = bitmaps.touching.is_subset(&bitmaps.visible)
         && bitmaps.unknown.is_subset(&bitmaps.visible)
         && bitmaps.touching.is_disjoint(&bitmaps.unknown);
-    (nested && cursor.remaining() == 0).then_some(bitmaps)
+    nested.then_some(bitmaps)
+}
+
+/// The first of the bitmaps alone: what a renderer asks for in every frame.
+pub(super) fn decode_visible(bytes: &[u8], objects: usize) -> Option<RoaringBitmap> {
+    bitmap(split(bytes)?[0], objects)
+}
+
+fn split(bytes: &[u8]) -> Option<[&[u8]; 3]> {
+    let mut cursor = Cursor::new(bytes);
+    let lengths = [cursor.u32()?, cursor.u32()?, cursor.u32()?];
+    let mut next = |length: u32| cursor.take(length as usize);
+    let bodies = [next(lengths[0])?, next(lengths[1])?, next(lengths[2])?];
+    (cursor.remaining() == 0).then_some(bodies)
+}
+
+fn bitmap(mut bytes: &[u8], objects: usize) -> Option<RoaringBitmap> {
+    let bitmap = RoaringBitmap::deserialize_from(&mut bytes).ok()?;
+    let in_range = bitmap.max().is_none_or(|max| (max as usize) < objects);
+    (bytes.is_empty() && in_range).then_some(bitmap)
 }
 
 /// The witnesses, compressed; nothing at all if there are none.
@@ -105,6 +117,7 @@ pub(super) fn encode_witnesses(record: &CellRecord) -> (Vec<u8>, u32) {
         };
         raw.extend(visible.object.to_le_bytes());
         raw.extend(witness.polygon.to_le_bytes());
+        raw.extend(witness.source.to_le_bytes());
         raw.extend(
             witness
                 .from
@@ -125,11 +138,13 @@ pub(super) fn decode_witnesses(bytes: &[u8], count: u32) -> Option<Vec<(u32, Wit
     while cursor.remaining() > 0 {
         let object = cursor.u32()?;
         let polygon = cursor.u32()?;
+        let source = cursor.u32()?;
         let mut three = || Some([cursor.i64()?, cursor.i64()?, cursor.i64()?]);
         out.push((
             object,
             WitnessRecord {
                 polygon,
+                source,
                 from: three()?,
                 through: three()?,
             },

@@ -1,6 +1,6 @@
 //! From faces as given to strictly convex, exactly planar patches on the grid.
 //!
-//! Degenerate faces are dropped: a face without area blocks no open set of lines. Faces that
+//! Degenerate faces are dropped: a face without area hides nothing. Faces that
 //! snapping has bent, and faces that never were convex, are cut into triangles over the same
 //! corners, so that their outline, and with it every contact with a neighbor, stays what it was.
 
@@ -16,7 +16,7 @@ pub(crate) struct Patch {
     pub(crate) corners: Vec<u32>,
     /// Its canonical plane.
     pub(crate) plane: Plane,
-    /// Whether it blocks lines.
+    /// Whether it is an occluder.
     pub(crate) occludes: bool,
 }
 

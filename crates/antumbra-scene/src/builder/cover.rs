@@ -2,9 +2,9 @@
 //! panels are often modeled in layers that share their faces.
 //!
 //! Exact: what is left of a patch after subtracting another is a set of convex pieces, each kept
-//! as the list of lines that bound it. A corner is the name of two lines through grid points, never
-//! a rounded point, so its side of a third line is a 3x3 determinant of 25-, 25- and 50-bit
-//! columns, 103 bits in all.
+//! as the list of half-planes that bound it. A corner is the name of two of their borders, which go
+//! through grid points, and never a rounded point; so its side of a third border is a 3x3
+//! determinant of 25-, 25- and 50-bit columns, 103 bits in all.
 
 use std::cmp::Ordering;
 
@@ -49,13 +49,13 @@ pub(crate) fn drop_covered(
     before - polygons.len()
 }
 
-/// A line `a x + b y + c = 0` with the polygon where this is positive.
-type Line = [i128; 3];
+/// A half-plane `a x + b y + c >= 0`.
+type HalfPlane = [i128; 3];
 
 /// A convex polygon of the plane, counter-clockwise.
 struct Shape {
     corners: Vec<[i64; 2]>,
-    lines: Vec<Line>,
+    sides: Vec<HalfPlane>,
     min: [i64; 2],
     max: [i64; 2],
     doubled_area: i64,
@@ -77,14 +77,14 @@ impl Shape {
             doubled_area = -doubled_area;
         }
         let n = corners.len();
-        let lines = (0..n)
-            .map(|i| line(corners[i], corners[(i + 1) % n]))
+        let sides = (0..n)
+            .map(|i| left_of(corners[i], corners[(i + 1) % n]))
             .collect();
         let min = std::array::from_fn(|k| corners.iter().map(|c| c[k]).min().unwrap_or(0));
         let max = std::array::from_fn(|k| corners.iter().map(|c| c[k]).max().unwrap_or(0));
         Self {
             corners,
-            lines,
+            sides,
             min,
             max,
             doubled_area,
@@ -101,13 +101,17 @@ fn turn(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// The line from `a` to `b`, positive on the left.
-fn line(a: [i64; 2], b: [i64; 2]) -> Line {
+/// What lies on the left of the way from `a` to `b`.
+fn left_of(a: [i64; 2], b: [i64; 2]) -> HalfPlane {
     let (x, y) = (a[1] - b[1], b[0] - a[0]);
     [x, y, -(x * a[0] + y * a[1])].map(i128::from)
 }
 
-/// For each shape the others whose boxes overlap its own in more than a border.
+/// No polygon is compared with more others than this. Keeping one that is covered costs time later,
+/// never truth, and heaps of overlapping polygons would cost more now.
+const MOST: usize = 64;
+
+/// For each shape some others whose boxes overlap its own in more than a border.
 fn overlaps(shapes: &[Shape]) -> Vec<Vec<usize>> {
     let mut order: Vec<usize> = (0..shapes.len()).collect();
     order.sort_by_key(|&i| (shapes[i].min[0], i));
@@ -119,8 +123,11 @@ fn overlaps(shapes: &[Shape]) -> Vec<Vec<usize>> {
         for &j in &active {
             let other = &shapes[j];
             if other.min[1] < here.max[1] && here.min[1] < other.max[1] {
-                found[i].push(j);
-                found[j].push(i);
+                for (one, other) in [(i, j), (j, i)] {
+                    if found[one].len() < MOST {
+                        found[one].push(other);
+                    }
+                }
             }
         }
         active.push(i);
@@ -134,15 +141,15 @@ fn is_covered(shape: &Shape, others: &[&Shape]) -> bool {
         .corners
         .iter()
         .all(|&p| others.iter().any(|other| other.holds(p)))
-        && is_piece_covered(&shape.lines, others)
+        && is_piece_covered(&shape.sides, others)
 }
 
 /// Whether the interior of a convex piece lies in the union of the others.
-fn is_piece_covered(piece: &[Line], others: &[&Shape]) -> bool {
+fn is_piece_covered(piece: &[HalfPlane], others: &[&Shape]) -> bool {
     let Some((first, rest)) = others.split_first() else {
         return false;
     };
-    let Some(outside) = subtract(piece, &first.lines) else {
+    let Some(outside) = subtract(piece, &first.sides) else {
         return is_piece_covered(piece, rest);
     };
     outside.iter().all(|part| is_piece_covered(part, rest))
@@ -150,45 +157,45 @@ fn is_piece_covered(piece: &[Line], others: &[&Shape]) -> bool {
 
 /// What is left of a piece outside a convex polygon, as convex pieces; `None` if they do not
 /// overlap.
-fn subtract(piece: &[Line], polygon: &[Line]) -> Option<Vec<Vec<Line>>> {
+fn subtract(piece: &[HalfPlane], polygon: &[HalfPlane]) -> Option<Vec<Vec<HalfPlane>>> {
     let mut outside = Vec::new();
     let mut inside = piece.to_vec();
-    for line in polygon {
-        outside.extend(clip(&inside, &line.map(|c| -c)));
-        inside = clip(&inside, line)?;
+    for half in polygon {
+        outside.extend(clip(&inside, &half.map(|c| -c)));
+        inside = clip(&inside, half)?;
     }
     Some(outside)
 }
 
-/// The part of a convex piece on the positive side of a line, if it has an interior.
-fn clip(piece: &[Line], line: &Line) -> Option<Vec<Line>> {
+/// The part of a convex piece in a half-plane, if it has an interior.
+fn clip(piece: &[HalfPlane], half: &HalfPlane) -> Option<Vec<HalfPlane>> {
     let n = piece.len();
-    // Corner i is where line i meets the next one.
+    // Corner i is where side i meets the next one.
     let sides: Vec<Ordering> = (0..n)
-        .map(|i| side(&piece[i], &piece[(i + 1) % n], line))
+        .map(|i| side(&piece[i], &piece[(i + 1) % n], half))
         .collect();
     if sides.iter().all(|s| s.is_ge()) {
         return Some(piece.to_vec());
     }
     // The corners on the positive side are consecutive; so are the edges that have one.
     let first = (0..n).find(|&i| sides[i].is_gt() && sides[(i + n - 1) % n].is_le())?;
-    let mut kept: Vec<Line> = vec![piece[first]];
+    let mut kept: Vec<HalfPlane> = vec![piece[first]];
     let mut i = first;
     while sides[i].is_gt() {
         i = (i + 1) % n;
         kept.push(piece[i]);
     }
-    kept.push(*line);
+    kept.push(*half);
     Some(kept)
 }
 
-/// On which side of a line two others meet. They follow each other counter-clockwise, so the
+/// Whether the corner of two sides lies in a half-plane (greater), on its border, or outside. They follow each other counter-clockwise, so the
 /// third coordinate of their meeting point is positive.
-fn side(p: &Line, q: &Line, line: &Line) -> Ordering {
+fn side(p: &HalfPlane, q: &HalfPlane, half: &HalfPlane) -> Ordering {
     let x = p[1] * q[2] - p[2] * q[1];
     let y = p[2] * q[0] - p[0] * q[2];
     let w = p[0] * q[1] - p[1] * q[0];
-    (line[0] * x + line[1] * y + line[2] * w).cmp(&0)
+    (half[0] * x + half[1] * y + half[2] * w).cmp(&0)
 }
 
 #[cfg(test)]

@@ -2,6 +2,9 @@
 
 use antumbra_kernel::{Aabb, Point, sub};
 
+/// How near is near, in grid steps: snapping moves an edge and a vertex by half a step each.
+const NEAR: i64 = 1;
+
 /// Points up to this number are tested one by one; more cost less when split once more.
 const LEAF: usize = 8;
 
@@ -102,7 +105,7 @@ impl Segment {
     /// of two 27-bit numbers, so exact in 64 bits.
     fn is_near(&self, bounds: &Aabb) -> bool {
         let (center, size) = (bounds.center_doubled(), bounds.extent());
-        let reach = size.map(|s| s + 2);
+        let reach = size.map(|s| s + 2 * NEAR);
         let away: [i64; 3] = std::array::from_fn(|k| self.middle[k] - center[k]);
         let long = self.half.map(i64::abs);
         (0..3).all(|k| away[k].abs() <= reach[k] + long[k])

@@ -10,8 +10,8 @@
 //! closed polygons that share a segment leave no gap.
 //!
 //! Order along the edge is by the sum of the coordinates, each taken in the direction of the edge.
-//! Snapping keeps the order of each single coordinate, so points of a line come in the order they
-//! had before snapping, on every edge of that line alike.
+//! Snapping keeps the order of each single coordinate, so collinear points come in the order they
+//! had before snapping, on every edge that lay along them alike.
 
 use antumbra_kernel::{Point, sub};
 

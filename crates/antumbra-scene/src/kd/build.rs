@@ -5,6 +5,7 @@
 
 use antumbra_kernel::{Aabb, Point};
 
+use super::meets::Shape;
 use super::{KdNode, KdTree, cut};
 use crate::PolygonId;
 
@@ -22,6 +23,11 @@ pub enum KdHeuristic {
 
 /// A node with no more polygons is not split.
 const LEAF: usize = 4;
+/// What a node costs, in polygons: a visibility test of a box is about that of its front faces.
+/// With 1 the trees of two office models had half as many leaves again for 15 % more expected
+/// nodes and 15 % fewer expected polygons; with 4 leaves grew to 7 polygons. With 2 they hold 4
+/// to 7, and each polygon is listed 3 times.
+const NODE: i128 = 2;
 /// A node with more polygons is split even where the heuristic sees no gain, a few times on a way.
 const CROWD: usize = 12;
 /// How often a way may be split without gain.
@@ -56,7 +62,11 @@ struct Split {
     at: i32,
 }
 
-pub(super) fn build(boxes: &[Aabb], heuristic: KdHeuristic) -> KdTree {
+pub(super) fn build<'a>(
+    boxes: &[Aabb],
+    shapes: impl Fn(u32) -> Option<Shape<'a>>,
+    heuristic: KdHeuristic,
+) -> KdTree {
     let origin = Point::new(0, 0, 0);
     let bounds = boxes.iter().copied().reduce(Aabb::union).unwrap_or(Aabb {
         min: origin,
@@ -67,6 +77,7 @@ pub(super) fn build(boxes: &[Aabb], heuristic: KdHeuristic) -> KdTree {
     let items = Vec::with_capacity(boxes.len() * 2);
     let mut builder = Builder {
         boxes,
+        shapes,
         heuristic,
         nodes,
         items,
@@ -79,14 +90,15 @@ pub(super) fn build(boxes: &[Aabb], heuristic: KdHeuristic) -> KdTree {
     }
 }
 
-struct Builder<'a> {
-    boxes: &'a [Aabb],
+struct Builder<'b, F> {
+    boxes: &'b [Aabb],
+    shapes: F,
     heuristic: KdHeuristic,
     nodes: Vec<KdNode>,
     items: Vec<PolygonId>,
 }
 
-impl Builder<'_> {
+impl<'a, F: Fn(u32) -> Option<Shape<'a>>> Builder<'_, F> {
     /// Appends the subtree over some polygons and returns its root.
     fn node(&mut self, bounds: Aabb, list: Vec<u32>, depth_left: u32, patience: u8) -> u32 {
         let index = self.nodes.len() as u32;
@@ -105,18 +117,24 @@ impl Builder<'_> {
         let Split { axis, at, .. } = split;
         let mut below = Vec::with_capacity(list.len() / 2 + 1);
         let mut above = Vec::with_capacity(list.len() / 2 + 1);
+        let (low, high) = cut(bounds, axis, at);
         for &i in &list {
             let side = sides(&self.boxes[i as usize], axis, at);
-            if side.lower {
+            // Only one that straddles can miss a child: others are there with all they had here.
+            let shape = if side.lower && side.upper {
+                (self.shapes)(i)
+            } else {
+                None
+            };
+            if side.lower && shape.is_none_or(|shape| shape.meets(&low)) {
                 below.push(i);
             }
-            if side.upper {
+            if side.upper && shape.is_none_or(|shape| shape.meets(&high)) {
                 above.push(i);
             }
         }
         // Free the list before going down: a way holds one list a level otherwise.
         drop(list);
-        let (low, high) = cut(bounds, axis, at);
         let lower = self.node(low, below, depth_left - 1, patience);
         let upper = self.node(high, above, depth_left - 1, patience);
         self.nodes[index as usize] = KdNode::Inner {
@@ -164,7 +182,7 @@ impl Builder<'_> {
             (0..3).filter_map(|k| bin(bounds, k, n, spans(k))).min()
         }?;
         let as_leaf = area(bounds) * n as i128;
-        if best.cost + area(bounds) < as_leaf {
+        if best.cost + NODE * area(bounds) < as_leaf {
             Some((best, patience))
         } else if n > CROWD && 2 * best.cost < 3 * as_leaf {
             Some((best, patience.checked_sub(1)?))

@@ -2,7 +2,7 @@
 
 use antumbra_kernel::{Aabb, LIMIT, Plane, Point};
 
-use super::{PolygonRef, Scene};
+use super::{PolygonId, PolygonRef, Scene};
 use crate::kd;
 
 /// The first broken invariant, as a sentence.
@@ -21,7 +21,10 @@ pub(super) fn check(scene: &Scene) -> Result<(), String> {
             scene.bounds
         ));
     }
-    kd::check(&scene.kd, &boxes)
+    kd::check(&scene.kd, &boxes, |i| {
+        let PolygonRef { corners, plane, .. } = scene.polygon(PolygonId(i));
+        Some(kd::Shape { corners, plane })
+    })
 }
 
 fn check_arrays(scene: &Scene) -> Result<(), String> {

@@ -253,10 +253,9 @@ impl<N: Numbers> Cone<N> {
             return;
         }
         let mut place = [MOST_ROWS; MOST_ROWS];
-        let mut kept = 0;
-        for k in (0..rows).filter(|&k| counts[k] >= FACET_RAYS) {
+        let facets = (0..rows).filter(|&k| counts[k] >= FACET_RAYS);
+        for (kept, k) in facets.enumerate() {
             place[k] = kept;
-            kept += 1;
         }
         for ray in &mut self.rays {
             ray.tight = bits(ray.tight)

@@ -1,0 +1,85 @@
+//! The options that all commands share, and the list of commands.
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::commands::{bake, completions, demo, r#gen, man, pair, pvs, ray};
+use crate::output::Output;
+use crate::values::positive;
+
+/// Exact visibility: what can be seen from here, with a proof of every answer.
+#[derive(Debug, Parser)]
+#[command(name = "antumbra", version, propagate_version = true, after_help = EXAMPLES)]
+pub(crate) struct Cli {
+    #[command(flatten)]
+    pub global: Global,
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  antumbra demo
+  antumbra bake house.glb --cells grid:2 -o house.pvs
+  antumbra pvs query house.pvs --at 3.5,-2,1.6
+  antumbra pair house.glb --from lamp --to table
+
+Exit codes: 0 done; 2 wrong usage; 3 damaged or impossible content; 4 a path that cannot be
+read or written; 5 stopped, with what was finished saved.";
+
+/// Options of every command.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct Global {
+    /// Threads to use (default: all cores); results never depend on it
+    #[arg(long, global = true, value_name = "N", help_heading = "Global options")]
+    pub threads: Option<u16>,
+    /// Print no progress and no notes
+    #[arg(long, short, global = true, help_heading = "Global options")]
+    pub quiet: bool,
+    /// Grid step in scene units (default: the finest power of two that fits)
+    #[arg(long, global = true, value_name = "SIZE", value_parser = positive, help_heading = "Global options")]
+    pub grid: Option<f64>,
+    /// What chance depends on
+    #[arg(
+        long,
+        global = true,
+        value_name = "N",
+        default_value_t = 1,
+        help_heading = "Global options"
+    )]
+    pub seed: u64,
+    /// Print exactly one JSON object to stdout
+    #[arg(long, global = true, help_heading = "Global options")]
+    pub json: bool,
+}
+
+impl Global {
+    /// How to talk.
+    pub(crate) fn output(&self) -> Output {
+        Output {
+            json: self.json,
+            quiet: self.quiet,
+        }
+    }
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Compute what can be seen from every cell of a scene
+    Bake(bake::BakeArgs),
+    /// Look into, check, compare and draw a .pvs file
+    #[command(subcommand)]
+    Pvs(pvs::PvsCommand),
+    /// Decide whether two objects, polygons or points can see each other
+    Pair(pair::PairArgs),
+    /// Follow a line: first hit and free stretches, exactly
+    Ray(ray::RayArgs),
+    /// Make a synthetic scene
+    Gen(r#gen::GenArgs),
+    /// Bake, check and draw a small office that is built in
+    Demo(demo::DemoArgs),
+    /// Print a completion script for a shell
+    Completions(completions::CompletionsArgs),
+    /// Print the manual page
+    Man(man::ManArgs),
+}

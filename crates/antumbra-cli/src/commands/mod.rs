@@ -1,0 +1,28 @@
+//! One file a command.
+
+pub(crate) mod bake;
+pub(crate) mod completions;
+pub(crate) mod demo;
+pub(crate) mod r#gen;
+pub(crate) mod man;
+pub(crate) mod pair;
+pub(crate) mod pvs;
+pub(crate) mod ray;
+
+use crate::cli::{Cli, Command};
+use crate::failure::Failure;
+
+/// Runs the command that was asked for.
+pub(crate) fn run(cli: Cli) -> Result<(), Failure> {
+    let global = cli.global;
+    match cli.command {
+        Command::Bake(args) => bake::run(&args, &global),
+        Command::Pvs(command) => pvs::run(&command, &global),
+        Command::Pair(args) => pair::run(&args, &global),
+        Command::Ray(args) => ray::run(&args, &global),
+        Command::Gen(args) => r#gen::run(&args, &global),
+        Command::Demo(args) => demo::run(&args, &global),
+        Command::Completions(args) => completions::run(&args),
+        Command::Man(args) => man::run(&args),
+    }
+}

@@ -1,0 +1,6 @@
+//! Reads any bytes as PLY.
+#![no_main]
+
+mod scene;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| scene::read(bytes, "fuzz.ply"));
