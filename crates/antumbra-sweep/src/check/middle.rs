@@ -250,7 +250,11 @@ mod tests {
         let row = |m: u32, d: u32, flip: usize| {
             MiddleRow::new(std::array::from_fn(|k| {
                 let top = (1_i128 << if k < 3 { m } else { d }) - 1 - k as i128;
-                if (k * k + flip) % 3 == 0 { -top } else { top }
+                if (k * k + flip).is_multiple_of(3) {
+                    -top
+                } else {
+                    top
+                }
             }))
         };
         let rows = [
