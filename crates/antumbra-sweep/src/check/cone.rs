@@ -15,14 +15,16 @@ const FACET_RAYS: u32 = 5;
 const EDGE_ROWS: u32 = 4;
 /// Tight rows are bits.
 const MOST_ROWS: usize = 128;
+/// Bakes stay below 200; this bounds the work that a hostile proof can cause.
+const MOST_RAYS: usize = 4096;
 
 /// Why a cone could not be computed with these numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Trouble {
     /// The rows are too wide: take big integers.
     TooWide,
-    /// More facets than a mask has bits.
-    TooManyFacets,
+    /// More facets than a mask has bits, or far more rays than any bake needs.
+    TooComplex,
     /// The rows leave a line free.
     NotPointed,
 }
@@ -174,7 +176,7 @@ impl<N: Numbers> Cone<N> {
             return Err(Trouble::TooWide);
         }
         if self.rows.len() == MOST_ROWS {
-            return Err(Trouble::TooManyFacets);
+            return Err(Trouble::TooComplex);
         }
         let mut out = Vec::new();
         for (i, p) in self.rays.iter().enumerate() {
@@ -183,6 +185,9 @@ impl<N: Numbers> Cone<N> {
             }
             for (j, n) in self.rays.iter().enumerate() {
                 if signs[j].is_negative() && self.adjacent(i, j) {
+                    if self.rays.len() + out.len() == MOST_RAYS {
+                        return Err(Trouble::TooComplex);
+                    }
                     out.push(self.crossing(p.tight & n.tight, row)?);
                 }
             }

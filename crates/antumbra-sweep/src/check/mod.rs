@@ -15,11 +15,13 @@ mod numbers;
 mod piece;
 mod real;
 mod rows;
+#[cfg(test)]
+mod sampled;
 mod start;
 mod tree;
 mod witness;
 
-use antumbra_kernel::Aabb;
+use antumbra_kernel::{Aabb, LIMIT};
 use antumbra_scene::{
     BoxContact, KdNode, ObjectId, PolygonId, PolygonRef, Scene, ViewCell, box_contact,
     polygons_touch,
@@ -54,6 +56,10 @@ pub fn check_cell(
     proof: &[u8],
 ) -> CheckReport {
     let mut report = CheckReport::default();
+    if !on_the_grid(&cell.bounds) {
+        report.fail(cell, "its box is inverted or reaches beyond the grid");
+        return report;
+    }
     let Some(source) = Source::new(scene, cell) else {
         report.fail(cell, "its source object is not in the scene");
         return report;
@@ -74,6 +80,13 @@ pub fn check_cell(
         Err(error) => report.fail(cell, &error.to_string()),
     }
     report
+}
+
+fn on_the_grid(bounds: &Aabb) -> bool {
+    let pairs = bounds.min.to_array().into_iter().zip(bounds.max.to_array());
+    pairs
+        .into_iter()
+        .all(|(low, high)| -LIMIT < low && low <= high && high < LIMIT)
 }
 
 impl CheckReport {

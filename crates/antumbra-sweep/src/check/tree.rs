@@ -3,15 +3,14 @@
 use std::cell::OnceCell;
 use std::ops::Range;
 
-use antumbra_kernel::{Plane, Sign};
+use antumbra_kernel::{I256, Plane, Sign};
 use antumbra_scene::{PolygonId, PolygonRef, Scene};
 
 use super::cone::Trouble;
 use super::ends::Gate;
 use super::piece::{Piece, hull};
 use super::rows::Hyperplane;
-use crate::RowName;
-use crate::proof::{Node, Tree};
+use crate::proof::{Node, RowName, Tree};
 
 /// The lines that a tree is about, and the rules for them.
 pub(super) struct Question<'a> {
@@ -139,7 +138,7 @@ impl Question<'_> {
         }
     }
 
-    fn hyperplane(&self, name: RowName) -> Result<Hyperplane, String> {
+    pub(super) fn hyperplane(&self, name: RowName) -> Result<Hyperplane, String> {
         match name {
             RowName::Edge { polygon, edge } => {
                 let corners = self.polygon(polygon)?.corners;
@@ -169,7 +168,7 @@ impl Question<'_> {
 
     /// The rows that make all lines of a piece cross an occluder in a direction, with what they
     /// are, or why it cannot block.
-    fn blocked_rows(
+    pub(super) fn blocked_rows(
         &self,
         id: PolygonId,
         negative: bool,
@@ -239,6 +238,11 @@ impl Question<'_> {
         if !before.contains(&Sign::Positive) {
             return Err(format!("polygon {id} lies beyond the target gate"));
         }
+        if !in_source_plane && !lies_between(polygon, &self.from.plane, &self.to.plane) {
+            return Err(format!(
+                "polygon {id} has no part both in front of the source gate and before the target gate"
+            ));
+        }
         if !self.to.reaches(polygon.plane, go_to) {
             return Err(format!(
                 "no line to the target gate crosses polygon {id} in this direction"
@@ -246,6 +250,27 @@ impl Question<'_> {
         }
         Ok(())
     }
+}
+
+/// Whether a polygon has a point strictly in front of one plane and strictly behind another.
+///
+/// Corners on both wanted sides may exist without such a point; then the edges that are left out
+/// bound nothing, and the other rows say nothing about the polygon.
+fn lies_between(polygon: &PolygonRef<'_>, front_of: &Plane, behind: &Plane) -> bool {
+    let values: Vec<(i128, i128)> = polygon
+        .corners
+        .iter()
+        .map(|&p| (front_of.evaluate(p), -behind.evaluate(p)))
+        .collect();
+    let next = values.iter().cycle().skip(1);
+    values.iter().any(|&(f, _)| f > 0)
+        && values.iter().zip(next).any(|(&(f, g), &(h, k))| {
+            // The part in front of the first plane is spanned by its corners there and by the
+            // points where its edges cross the plane.
+            let crosses = f.signum() * h.signum() < 0;
+            let weighted = |a: i128, b: i128| I256::product_i128(a.abs(), b);
+            f >= 0 && g > 0 || crosses && (weighted(h, g) + weighted(f, k)).sign().is_positive()
+        })
 }
 
 fn sides(polygon: &PolygonRef<'_>, plane: &Plane) -> Vec<Sign> {

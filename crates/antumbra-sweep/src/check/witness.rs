@@ -9,8 +9,7 @@ use antumbra_scene::{KdNode, PolygonId, PolygonRef, Scene};
 use dashu_int::IBig;
 
 use super::ends::{Gate, Source};
-use crate::line::FinePoint;
-use crate::verdict::Witness;
+use crate::verdict::{FinePoint, Witness};
 
 const FINE_BITS: u32 = 16;
 const FINE_STEPS: f64 = (1_u32 << FINE_BITS) as f64;

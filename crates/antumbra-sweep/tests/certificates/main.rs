@@ -409,17 +409,9 @@ fn damaged_bytes_fail() {
     }
 }
 
-/// From S to R some lines pass O and some do not, though one edge of O has them all outside: its
-/// plane does not separate them.
-#[test]
-fn without_separation_nothing_is_covered() {
-    let triangles = [
-        [[-3.0, 5.0, 0.0], [1.0, -4.0, 0.0], [3.0, 3.0, 0.0]],
-        [[-5.0, -3.0, 10.0], [-1.0, 5.0, 10.0], [-1.0, 3.0, 10.0]],
-        [[0.0, -1.0, 5.0], [0.0, 1.0, 5.0], [0.0, 0.0, 6.0]],
-    ];
+fn triangle_scene(triangles: &[[[f64; 3]; 3]]) -> Scene {
     let objects = triangles
-        .into_iter()
+        .iter()
         .map(|t| {
             let part = PartInput {
                 vertices: t.to_vec(),
@@ -440,6 +432,19 @@ fn without_separation_nothing_is_covered() {
         .grid(Some(1.0))
         .build()
         .expect("a good scene");
+    scene
+}
+
+/// From S to R some lines pass O and some do not, though one edge of O has them all outside: its
+/// plane does not separate them.
+#[test]
+fn without_separation_nothing_is_covered() {
+    let triangles = [
+        [[-3.0, 5.0, 0.0], [1.0, -4.0, 0.0], [3.0, 3.0, 0.0]],
+        [[-5.0, -3.0, 10.0], [-1.0, 5.0, 10.0], [-1.0, 3.0, 10.0]],
+        [[0.0, -1.0, 5.0], [0.0, 1.0, 5.0], [0.0, 0.0, 6.0]],
+    ];
+    let scene = triangle_scene(&triangles);
     let bounds = scene.object_bounds(ObjectId(0)).expect("a polygon");
     let cell = ViewCell {
         name: "s".into(),
@@ -450,4 +455,56 @@ fn without_separation_nothing_is_covered() {
     let proof = CellProof { claims }.to_bytes();
     let report = check_cell(&scene, &cell, &[], &[ObjectId(2)], Accuracy::Exact, &proof);
     fails(&report, "does not separate");
+}
+
+/// The occluder has a corner in front of the source's plane and one before the target's, but no
+/// part between both. The rows that are left then hold for all lines, and none meets it.
+#[test]
+fn an_occluder_without_a_part_in_between_blocks_nothing() {
+    let scene = triangle_scene(&[
+        [
+            [3987.0, 95.0, 2291.0],
+            [3997.0, 95.0, 2321.0],
+            [3987.0, 105.0, 2431.0],
+        ],
+        [
+            [-2752.0, 3581.0, 4155.0],
+            [-2733.0, 3581.0, 4158.0],
+            [-2752.0, 3600.0, 4176.0],
+        ],
+        [
+            [-6000.0, -5000.0, -5000.0],
+            [2000.0, 0.0, -6000.0],
+            [-2000.0, -2000.0, -3000.0],
+        ],
+    ]);
+    let bounds = scene.object_bounds(ObjectId(0)).expect("a polygon");
+    let cell = ViewCell {
+        name: "s".into(),
+        bounds,
+        kind: CellKind::Object(ObjectId(0)),
+    };
+    let mut found = 0;
+    for negative in [false, true] {
+        let polygon = PolygonId(2);
+        let gate = |n: u32| GateProof {
+            source: n / 2,
+            target: n % 2,
+            tree: Tree {
+                nodes: vec![Node::Blocked { polygon, negative }],
+            },
+        };
+        let target = Target::Polygon(PolygonId(1));
+        let reason = Reason::Gates((0..4).map(gate).collect());
+        let claims = vec![Claim { target, reason }];
+        let proof = CellProof { claims }.to_bytes();
+        let report = check_cell(&scene, &cell, &[], &[ObjectId(2)], Accuracy::Exact, &proof);
+        assert_eq!(report.hidden_checked, 0);
+        found += report
+            .failed
+            .iter()
+            .filter(|f| f.contains("has no part"))
+            .count();
+    }
+    assert!(found > 0);
 }
