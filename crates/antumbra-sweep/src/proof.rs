@@ -5,7 +5,7 @@
 use antumbra_kernel::{Aabb, Point};
 use antumbra_scene::PolygonId;
 
-pub use crate::blocker::RowName;
+pub(crate) use crate::blocker::RowName;
 
 /// What a claim is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

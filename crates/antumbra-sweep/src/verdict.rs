@@ -2,7 +2,7 @@
 
 use antumbra_scene::{ObjectId, PolygonId};
 
-pub use crate::line::FinePoint;
+pub(crate) use crate::line::FinePoint;
 use crate::search::Work;
 
 /// A free line of sight: the proof of *visible*.
