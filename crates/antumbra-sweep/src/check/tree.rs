@@ -10,8 +10,8 @@ use super::cone::Trouble;
 use super::ends::Gate;
 use super::piece::{Piece, hull};
 use super::rows::Hyperplane;
-use crate::RowName;
-use crate::proof::{Node, Tree};
+
+use crate::proof::{Node, RowName, Tree};
 
 /// The lines that a tree is about, and the rules for them.
 pub(super) struct Question<'a> {

@@ -9,7 +9,7 @@ use antumbra_scene::{KdNode, PolygonId, PolygonRef, Scene};
 use dashu_int::IBig;
 
 use super::ends::{Gate, Source};
-use crate::line::FinePoint;
+use crate::verdict::FinePoint;
 use crate::verdict::Witness;
 
 const FINE_BITS: u32 = 16;
