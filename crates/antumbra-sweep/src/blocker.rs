@@ -9,38 +9,9 @@
 use antumbra_kernel::plucker::edge_row;
 use antumbra_kernel::{Plane, Point, Sign};
 use antumbra_lines::{Gate, Halfspace, PluckerSpace, common_line_row};
-use antumbra_scene::{PolygonId, PolygonRef};
+use antumbra_scene::PolygonRef;
 
-/// The name of a hyperplane in a certificate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum RowName {
-    /// The edge from corner `edge` to the next corner of a polygon.
-    Edge {
-        /// The polygon.
-        polygon: PolygonId,
-        /// The number of its edge.
-        edge: u32,
-    },
-    /// The common line of the source's plane and a polygon's, positive where a line along the
-    /// polygon's normal crosses it in front of the source.
-    SourceLine {
-        /// The polygon.
-        polygon: PolygonId,
-    },
-    /// The common line of the target's plane and a polygon's, positive where a line along the
-    /// polygon's normal crosses it before the target.
-    TargetLine {
-        /// The polygon.
-        polygon: PolygonId,
-    },
-    /// The line from a corner of the source gate to a corner of the target gate.
-    Chord {
-        /// Number of the source gate's corner.
-        from: u32,
-        /// Number of the target gate's corner.
-        to: u32,
-    },
-}
+use crate::proof::RowName;
 
 /// The lines that cross one occluder in one direction, between source and target.
 #[derive(Clone, Debug)]

@@ -17,14 +17,13 @@ mod search;
 mod size;
 mod verdict;
 
-pub use blocker::RowName;
 pub use caster::Caster;
 pub use check::{CheckReport, check_cell};
-pub use line::{FINE_BITS, FineLine, FinePoint};
+pub use line::FineLine;
 pub use pair::{PairResult, Surface, Verdict};
 pub use point::PointVerdict;
-pub use proof::{CellProof, Claim, GateProof, Node, ProofError, Reason, Target, Tree};
+pub use proof::{CellProof, Claim, GateProof, Node, ProofError, Reason, RowName, Target, Tree};
 pub use ray::{Hit, Trace};
 pub use region::{BakeOptions, Baker};
 pub use search::Work;
-pub use verdict::{Accuracy, CellResult, VisibleEntry, Witness};
+pub use verdict::{Accuracy, CellResult, FINE_BITS, FinePoint, VisibleEntry, Witness};

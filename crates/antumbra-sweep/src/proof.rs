@@ -5,8 +5,6 @@
 use antumbra_kernel::{Aabb, Point};
 use antumbra_scene::PolygonId;
 
-pub(crate) use crate::blocker::RowName;
-
 /// What a claim is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
@@ -14,6 +12,37 @@ pub enum Target {
     Box(Aabb),
     /// One polygon.
     Polygon(PolygonId),
+}
+
+/// The name of a hyperplane in a certificate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum RowName {
+    /// The edge from corner `edge` to the next corner of a polygon.
+    Edge {
+        /// The polygon.
+        polygon: PolygonId,
+        /// The number of its edge.
+        edge: u32,
+    },
+    /// The common line of the source's plane and a polygon's, positive where a line along the
+    /// polygon's normal crosses it in front of the source.
+    SourceLine {
+        /// The polygon.
+        polygon: PolygonId,
+    },
+    /// The common line of the target's plane and a polygon's, positive where a line along the
+    /// polygon's normal crosses it before the target.
+    TargetLine {
+        /// The polygon.
+        polygon: PolygonId,
+    },
+    /// The line from a corner of the source gate to a corner of the target gate.
+    Chord {
+        /// Number of the source gate's corner.
+        from: u32,
+        /// Number of the target gate's corner.
+        to: u32,
+    },
 }
 
 /// A node of a [`Tree`].

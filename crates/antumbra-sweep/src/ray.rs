@@ -10,7 +10,8 @@ use antumbra_kernel::{Plane, Point, sub};
 use antumbra_scene::{PolygonId, PolygonRef};
 
 use crate::caster::Caster;
-use crate::line::{FineLine, FinePoint, Meeting, Position};
+use crate::line::{FineLine, Meeting, Position};
+use crate::verdict::FinePoint;
 
 /// A polygon on a segment's way.
 #[derive(Clone, Copy, Debug)]
@@ -142,7 +143,7 @@ fn edge_values(plane: &Plane, a: Point, b: Point, line: &FineLine) -> (i128, i12
     let at = |p: &FinePoint| {
         let q = FinePoint::from_grid(a);
         (0..3)
-            .map(|k| inward[k] * i128::from((p.0[k] - q.0[k]) >> crate::line::FINE_BITS))
+            .map(|k| inward[k] * i128::from((p.0[k] - q.0[k]) >> crate::verdict::FINE_BITS))
             .sum::<i128>()
     };
     (at(&line.u), at(&line.v))

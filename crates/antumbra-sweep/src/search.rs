@@ -15,13 +15,14 @@ use antumbra_lines::{
 };
 use antumbra_scene::PolygonId;
 
-use crate::blocker::{BlockerCone, RowName, blocker_cones};
+use crate::blocker::{BlockerCone, blocker_cones};
 use crate::caster::{Caster, SAMPLING_SLACK, Segment};
-use crate::line::{Between, FineLine, FinePoint, Meeting, obstacle};
-use crate::proof::{Node, Tree};
+use crate::line::{Between, FineLine, Meeting, obstacle};
+use crate::proof::{Node, RowName, Tree};
 use crate::random::Random;
 use crate::sample::Sampler;
 use crate::size::size_below;
+use crate::verdict::FinePoint;
 
 /// One question: is a line free from one gate to another?
 pub(crate) struct Question<'a> {

@@ -1,9 +1,37 @@
 //! Answers: what is visible, with a witness each, and what is not known.
 
+use antumbra_kernel::Point;
 use antumbra_scene::{ObjectId, PolygonId};
 
-pub(crate) use crate::line::FinePoint;
 use crate::search::Work;
+
+/// Fine coordinates count 2^-FINE_BITS grid steps.
+pub const FINE_BITS: u32 = 16;
+const FINE: f64 = (1_u64 << FINE_BITS) as f64;
+
+/// A point with coordinates in units of 2^-16 grid steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct FinePoint(pub [i64; 3]);
+
+impl FinePoint {
+    /// The nearest fine point to fractional grid coordinates.
+    #[must_use]
+    pub fn round(p: [f64; 3]) -> Self {
+        Self(p.map(|c| (c * FINE).round() as i64))
+    }
+
+    /// A grid point.
+    #[must_use]
+    pub fn from_grid(p: Point) -> Self {
+        Self(p.to_i64().map(|c| c << FINE_BITS))
+    }
+
+    /// Fractional grid coordinates, for sampling and output.
+    #[must_use]
+    pub fn to_f64(self) -> [f64; 3] {
+        self.0.map(|c| c as f64 / FINE)
+    }
+}
 
 /// A free line of sight: the proof of *visible*.
 ///

@@ -5,7 +5,8 @@ use antumbra_scene::PolygonId;
 use super::source::{area, random_ray};
 use super::{CellBake, State};
 use crate::caster::Segment;
-use crate::line::{Between, FineLine, FinePoint, Meeting, obstacle};
+use crate::line::{Between, FineLine, Meeting, obstacle};
+use crate::verdict::FinePoint;
 use crate::verdict::{VisibleEntry, Witness};
 
 impl CellBake<'_> {
