@@ -137,7 +137,11 @@ pub(crate) fn run(args: &BakeArgs, global: &Global) -> Result<(), Failure> {
 /// The summary of a report and its first objects, or all.
 fn repairs(report: &str, all: bool) -> String {
     const SHORT: usize = 6;
-    let lines: Vec<&str> = report.trim_end().lines().collect();
+    let lines: Vec<&str> = report
+        .trim_end()
+        .lines()
+        .filter(|line| !line.ends_with(": nothing repaired"))
+        .collect();
     let shown = if all {
         lines.len()
     } else {

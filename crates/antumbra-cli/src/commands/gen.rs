@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use antumbra_io::{GlbOptions, write_glb, write_obj};
+use antumbra_io::{GlbOptions, Instancing, write_glb, write_obj};
 use antumbra_scene::SceneInput;
 use antumbra_scene::synth::{
     LayerParams, LayerPattern, MazeParams, OfficeKind, TriangleParams, face_count, floor, layers,
@@ -109,9 +109,15 @@ pub(crate) fn run(args: &GenArgs, global: &Global) -> Result<(), Failure> {
     let (scene, mut parameters) = make(&args.kind, global.seed)?;
     let bytes = match format {
         Format::Glb => {
+            // The quads of a raster are one mesh in many places: rounding cannot part them, because
+            // they overlap.
+            let instancing = match args.kind {
+                Kind::Walls(_) | Kind::Chessboard(_) => Instancing::Always,
+                _ => Instancing::default(),
+            };
             let options = GlbOptions {
+                instancing,
                 metadata: Some(parameters.clone()),
-                ..GlbOptions::default()
             };
             write_glb(&scene, &options)
         }

@@ -10,9 +10,9 @@ const PITCH: f64 = 2.0;
 /// Half the side of a quad: 2.02 m squared are the 4.0804 square metres of the thesis.
 const HALF_QUAD: f64 = 1.01;
 /// Distance of neighboring layers, in metres.
-const SPACING: f64 = 2.0;
+const SPACING: f64 = 1.0;
 /// Distance of the source from the first layer, in metres.
-const GAP: f64 = 10.0;
+const GAP: f64 = 15.0;
 
 /// Which quads of the raster a layer has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,14 +36,16 @@ pub struct LayerParams {
 
 /// Structured scenes: tests S1 to S6 of \[Bittner02, 8.14.2\].
 ///
-/// Layer `k` lies in the plane `x = 2 k`; its quads, 2.02 m squares on a 2 m raster centered on
+/// Layer `k` lies in the plane `x = k`; its quads, 2.02 m squares on a 2 m raster centered on
 /// the `x` axis, are the objects `k-row-column`, so neighbors overlap by 2 cm and a full layer has
 /// no gap. Neighboring quads lie in one plane, so none hides another: from a source no larger than
 /// a wall exactly the first 400 quads of `walls` are visible. A full chessboard lets light through
 /// its holes, but not at their corners, where quads overlap by 2 cm too.
 ///
-/// The object [`SOURCE`] comes last: a square at `x = -10` that faces `+x`, centered on the axis.
-/// The thesis states neither distance.
+/// The object [`SOURCE`] comes last: a square at `x = -15` that faces `+x`, centered on the axis.
+/// The thesis states neither distance. These were fitted: of some fifteen pairs that were tried, they come closest
+/// to its Table 8.2. From sources of 2, 50 and 200 square metres 976, 1140 and 1430 quads of 20 chessboards are
+/// visible, where the table has 924, 1132 and 1430; so those counts are no test of the engine.
 #[must_use]
 pub fn layers(params: &LayerParams) -> SceneInput {
     let middle = f64::from(RASTER - 1) / 2.0;
