@@ -17,6 +17,7 @@ pub struct Caster<'a> {
     first: Vec<u32>,
     planes: Vec<[f64; 4]>,
     occludes: Vec<bool>,
+    transparent: bool,
 }
 
 /// A segment in fractional grid coordinates, with its Plücker coordinates.
@@ -79,12 +80,14 @@ impl<'a> Caster<'a> {
             ]);
             occludes.push(polygon.occludes);
         }
+        let transparent = occludes.contains(&false);
         Self {
             scene,
             rows,
             first,
             planes,
             occludes,
+            transparent,
         }
     }
 
@@ -92,6 +95,11 @@ impl<'a> Caster<'a> {
     #[must_use]
     pub fn scene(&self) -> &'a Scene {
         self.scene
+    }
+
+    /// Whether any polygon lets lines through.
+    pub(crate) fn has_transparent(&self) -> bool {
+        self.transparent
     }
 
     /// Whether a polygon blocks lines.
@@ -230,11 +238,11 @@ impl<'a> Caster<'a> {
         let mut best: Option<(f64, PolygonId)> = None;
         self.visit(s, (t0, t1), SAMPLING_SLACK, |items, _, leave| {
             for &id in items {
-                if let Some(t) = self.crossing(id, s)
+                if accept(id)
+                    && let Some(t) = self.crossing(id, s)
                     && t >= t0
                     && t <= t1
                     && best.is_none_or(|b| (t, id) < b)
-                    && accept(id)
                 {
                     best = Some((t, id));
                 }

@@ -267,7 +267,9 @@ fn bin(
         below += starts[border];
         ended += ends[border];
         for at in [last_end[border], first_start[border + 1]] {
-            if at == i32::MIN || at == i32::MAX {
+            // A boundary on the border of the box is not counted exactly: polygons flat in it all
+            // go to one child, and the same cut would look good again and again.
+            if at <= bounds.min.to_array()[axis] || at >= bounds.max.to_array()[axis] {
                 continue;
             }
             let split = cost(bounds, axis, at, n, below, n - ended);

@@ -56,6 +56,9 @@ impl CellBake<'_> {
                 seen = true;
             }
         }
+        if !caster.has_transparent() {
+            return seen;
+        }
         // What does not occlude may stand in front.
         let end = first.map_or(1.0, |(t, _)| t);
         let glass = caster.first_hit(&segment, (0.0, end), |id| {
