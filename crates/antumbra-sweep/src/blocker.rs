@@ -7,7 +7,7 @@
 //! for the target.
 
 use antumbra_kernel::plucker::edge_row;
-use antumbra_kernel::{Plane, Point, Sign};
+use antumbra_kernel::{I256, Plane, Point, Sign};
 use antumbra_lines::{Gate, Halfspace, PluckerSpace, common_line_row};
 use antumbra_scene::PolygonRef;
 
@@ -48,6 +48,9 @@ pub(crate) fn blocker_cones(
         return Vec::new();
     }
     if !before.iter().any(|s| s.is_positive()) {
+        return Vec::new();
+    }
+    if !in_source && !reaches_between(polygon, from, to) {
         return Vec::new();
     }
     let sources = sides(polygon.plane, &from.corners);
@@ -118,6 +121,30 @@ pub(crate) fn blocker_cones(
         .collect()
 }
 
+/// Whether a point of the polygon is strictly in front of the source and strictly before the
+/// target. Corners on both sides of both planes do not imply it: the two parts may be apart.
+///
+/// Both distances are linear along an edge, and a region between two planes is unbounded, so it
+/// meets a convex polygon inside only if it meets an edge. Products have 154 bits.
+fn reaches_between(polygon: &PolygonRef<'_>, from: &Gate, to: &Gate) -> bool {
+    let values: Vec<(i128, i128)> = polygon
+        .corners
+        .iter()
+        .map(|&p| (from.plane.evaluate(p), -to.plane.evaluate(p)))
+        .collect();
+    let n = values.len();
+    (0..n).any(|i| {
+        let ((f, g), (h, k)) = (values[i], values[(i + 1) % n]);
+        if f > 0 && g > 0 || h > 0 && k > 0 {
+            return true;
+        }
+        // One end is in front only, the other before only: the front part must reach farther.
+        let (f, g, h, k) = if f > 0 { (f, g, h, k) } else { (h, k, f, g) };
+        let crossed = f > 0 && g <= 0 && h <= 0 && k > 0;
+        crossed && (I256::product_i128(-g, f - h) - I256::product_i128(f, k - g)).is_negative()
+    })
+}
+
 fn sides(plane: &Plane, points: &[Point]) -> Vec<Sign> {
     points.iter().map(|&p| plane.side(p)).collect()
 }
@@ -133,4 +160,54 @@ fn scalar_sign(a: &Plane, b: &Plane) -> Sign {
             .map(|k| i128::from(a.normal[k]) * i128::from(b.normal[k]))
             .sum::<i128>(),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use antumbra_kernel::{Plane, Point};
+    use antumbra_lines::{Gate, PluckerSpace};
+    use antumbra_scene::{ObjectId, PolygonId, PolygonRef};
+
+    use super::blocker_cones;
+
+    fn gate(corners: [Point; 3]) -> Gate {
+        let plane = Plane::through(corners[0], corners[1], corners[2]);
+        Gate {
+            corners: corners.to_vec(),
+            plane,
+        }
+    }
+
+    /// A polygon with a corner in front of the source and another before the target, but no point
+    /// that is both.
+    #[test]
+    fn an_occluder_with_no_part_between_blocks_nothing() {
+        let p = Point::new;
+        let source = gate([p(0, 0, 0), p(4, 0, 0), p(0, 4, 0)]);
+        // The target's plane is x + z = 20, crossed along (1, 0, 1).
+        let target = gate([p(20, 0, 0), p(16, 8, 4), p(10, 0, 10)]);
+        let plane_of = |c: &[Point]| Plane::through(c[0], c[1], c[2]);
+        let build = |space: &mut PluckerSpace, corners: &[Point]| {
+            let plane = plane_of(corners);
+            let polygon = PolygonRef {
+                id: PolygonId(0),
+                object: ObjectId(0),
+                corners,
+                plane: &plane,
+                occludes: true,
+            };
+            let target = if target.plane.side(p(0, 0, 0)).is_negative() {
+                target.clone()
+            } else {
+                target.flipped()
+            };
+            blocker_cones(space, &polygon, &source, true, &target).len()
+        };
+        let mut space = PluckerSpace::new();
+        // In front of the source only beyond the target, before the target only behind the source.
+        let apart = [p(30, 0, 5), p(-40, 1, -30), p(32, 9, 4)];
+        assert_eq!(build(&mut space, &apart), 0);
+        let between = [p(1, 0, 5), p(3, 1, 5), p(2, 9, 6)];
+        assert_ne!(build(&mut space, &between), 0);
+    }
 }
