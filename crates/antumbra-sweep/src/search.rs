@@ -10,10 +10,13 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use antumbra_kernel::Plane;
 use antumbra_lines::{
-    Cone, ConeError, Gate, Halfspace, PluckerSpace, RealLines, Split, real_lines, start_halfspaces,
+    Cone, ConeError, Gate, Halfspace, PluckerSpace, RealLines, Split, nearly_real, real_lines,
+    start_halfspaces,
 };
 use antumbra_scene::PolygonId;
+use dashu_int::IBig;
 
 use crate::blocker::{BlockerCone, blocker_cones};
 use crate::caster::{Caster, SAMPLING_SLACK, Segment};
@@ -238,7 +241,22 @@ impl Searcher {
                 sampler.persist(rng, SAMPLES / 2, &mut lines);
             }
             self.work.samples += lines.len() as u64;
-            match self.choose(frame, &cone, &lines) {
+            let segments: Vec<Segment> = lines
+                .iter()
+                .filter_map(|(d, m)| between_gates(d, m, frame.question))
+                .collect();
+            if segments.is_empty() {
+                break;
+            }
+            match self.choose(frame, &cone, &segments) {
+                Ok(blocker) => return self.subtract(frame, cone, slot, slots, stack, blocker),
+                Err(Answer::Undecided(Undecided::Thin)) => {}
+                Err(answer) => return Err(answer),
+            }
+        }
+        for _ in 0..PATIENCE / 10 {
+            let segments = self.thin_segments(frame.question, &cone, rng);
+            match self.choose(frame, &cone, &segments) {
                 Ok(blocker) => return self.subtract(frame, cone, slot, slots, stack, blocker),
                 Err(Answer::Undecided(Undecided::Thin)) => {}
                 Err(answer) => return Err(answer),
@@ -247,19 +265,35 @@ impl Searcher {
         Err(Answer::Undecided(Undecided::Thin))
     }
 
+    /// A few real lines of a thin cone, found by big integers.
+    fn thin_segments(
+        &mut self,
+        question: &Question<'_>,
+        cone: &Cone,
+        rng: &mut Random,
+    ) -> Vec<Segment> {
+        const LINES: usize = 4;
+        const BITS: usize = 160;
+        (0..LINES)
+            .filter_map(|_| {
+                let weight = || 1 + (rng.bits() >> 48) as u32;
+                let line = nearly_real(&mut self.space, cone, BITS, weight)?;
+                let from = meet_plane_exactly(&line, &question.from.plane)?;
+                let to = meet_plane_exactly(&line, &question.to.plane)?;
+                Some(Segment::new(from, to))
+            })
+            .collect()
+    }
+
     /// The occluder that blocks most sampled lines, with the direction in which it is crossed; or
     /// a free line as an answer.
     fn choose(
         &mut self,
         frame: &mut Frame<'_>,
         cone: &Cone,
-        lines: &[([f64; 3], [f64; 3])],
+        segments: &[Segment],
     ) -> Result<(PolygonId, bool), Answer> {
         let question = frame.question;
-        let segments: Vec<Segment> = lines
-            .iter()
-            .filter_map(|(d, m)| between_gates(d, m, question))
-            .collect();
         // Known blockers first: the scene is asked only about lines that none of them blocks.
         let mut tally = Tally::default();
         let mut candidates: Vec<(PolygonId, usize)> =
@@ -469,6 +503,24 @@ fn between_gates(d: &[f64; 3], m: &[f64; 3], question: &Question<'_>) -> Option<
         .chain(&q)
         .all(|c| c.is_finite() && c.abs() < f64::from(antumbra_kernel::LIMIT));
     ok.then(|| Segment::new(p, q))
+}
+
+/// Where a line by big integers crosses a plane, rounded once.
+fn meet_plane_exactly(line: &[IBig; 6], plane: &Plane) -> Option<[f64; 3]> {
+    let n = plane.normal.map(IBig::from);
+    let [d0, d1, d2, m0, m1, m2] = line;
+    let (d, m) = ([d0, d1, d2], [m0, m1, m2]);
+    let along: IBig = (0..3).map(|k| &n[k] * d[k]).sum();
+    if along == IBig::ZERO {
+        return None;
+    }
+    let c = IBig::from(plane.offset);
+    const FRACTION: usize = 48;
+    Some(std::array::from_fn(|k| {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        let numerator: IBig = &c * d[k] + &n[i] * m[j] - &n[j] * m[i];
+        ((numerator << FRACTION) / &along).to_f64().value() / (1_u64 << FRACTION) as f64
+    }))
 }
 
 fn meet_plane(d: &[f64; 3], m: &[f64; 3], gate: &Gate) -> Option<[f64; 3]> {
