@@ -242,14 +242,15 @@ fn inner_direction(piece: &[Direction]) -> Direction {
 
 fn primitive(d: Direction) -> Direction {
     use dashu_int::ops::Gcd;
-    let g = (&d[0]).gcd(&d[1]);
-    let g = IBig::from(g);
-    let g = if g == IBig::ZERO {
-        magnitude(&d[2])
-    } else {
-        IBig::from((&g).gcd(&d[2]))
-    };
-    if g <= IBig::ONE { d } else { d.map(|c| c / &g) }
+    // The greatest common divisor of two zeros is not defined, so zeros are left out.
+    let components = d.iter().filter(|c| **c != IBig::ZERO);
+    let common = components
+        .map(magnitude)
+        .reduce(|a, b| IBig::from(a.gcd(b)));
+    match common {
+        Some(common) if common > IBig::ONE => d.map(|c| c / &common),
+        _ => d,
+    }
 }
 
 fn dot(a: &Direction, b: &Direction) -> IBig {
@@ -262,4 +263,42 @@ fn sign(v: &IBig) -> Sign {
 
 fn magnitude(v: &IBig) -> IBig {
     if *v < IBig::ZERO { -v } else { v.clone() }
+}
+
+#[cfg(test)]
+mod tests {
+    use antumbra_kernel::Point;
+    use antumbra_scene::{Faces, ObjectInput, PartInput, PolygonId, SceneBuilder, SceneInput};
+
+    use crate::{Caster, PointVerdict};
+
+    /// The middle of the square is straight above: two components of that direction are zero.
+    #[test]
+    fn a_square_is_seen_along_an_axis() {
+        let mut faces = Faces::default();
+        faces.push(&[0, 1, 2, 3]);
+        let vertices = vec![
+            [-4.0, -4.0, 4.0],
+            [4.0, -4.0, 4.0],
+            [4.0, 4.0, 4.0],
+            [-4.0, 4.0, 4.0],
+        ];
+        let parts = vec![PartInput {
+            vertices,
+            faces,
+            ..PartInput::default()
+        }];
+        let input = SceneInput {
+            objects: vec![ObjectInput { name: None, parts }],
+            source_name: "test".into(),
+        };
+        let (scene, _) = SceneBuilder::new(input)
+            .grid(Some(1.0))
+            .build()
+            .expect("a sound scene");
+        let z = scene.bounds().min.z;
+        let answer = Caster::new(&scene).point_sees(Point::new(0, 0, z - 4), PolygonId(0));
+        let at = [0.0, 0.0, f64::from(z)];
+        assert_eq!(answer, PointVerdict::Visible { at, splits: 0 });
+    }
 }

@@ -188,15 +188,21 @@ impl Searcher {
             }
         }
         let limit = self.work.splits.saturating_add(budget);
+        // A part too thin for doubles decides nothing; another one may still hold a free line.
+        let mut thin = false;
         while let Some((cone, slot)) = stack.pop() {
             match self.treat(&mut frame, cone, slot, &mut slots, &mut stack, rng) {
                 Ok(()) => {}
+                Err(Answer::Undecided(Undecided::Thin)) => thin = true,
                 Err(answer) => return answer,
             }
             let stopped = question.cancel.is_some_and(|c| c.load(Ordering::Relaxed));
             if self.work.splits > limit || stopped {
                 return Answer::Undecided(Undecided::Budget);
             }
+        }
+        if thin {
+            return Answer::Undecided(Undecided::Thin);
         }
         let tree = preorder(&slots);
         self.work.leaves += tree

@@ -19,6 +19,8 @@ pub enum Refusal {
     Start,
     /// It does not end in the relative interior of the target.
     End,
+    /// Source and target polygon lie in one plane, and so does every segment between them.
+    InOnePlane,
     /// It meets an occluder, named by its corners.
     Blocked(Vec<[i64; 3]>),
 }
@@ -30,6 +32,9 @@ pub enum Refusal {
 /// What is wrong with it.
 pub fn check(view: &View<'_>, segment: &Segment) -> Result<(), Refusal> {
     let [from, to] = segment;
+    if view.is_flat() {
+        return Err(Refusal::InOnePlane);
+    }
     let starts = match view.source {
         Source::Polygon(i) => within(from, &view.polygons[*i].corners),
         Source::Cell { min, max } => inside_box(from, *min, *max),

@@ -47,6 +47,19 @@ impl<'a> View<'a> {
         &self.polygons[self.target].corners
     }
 
+    /// Whether source and target polygon lie in one plane: they see each other edge-on at best, so
+    /// the segments between them are no open set of lines (semantics 17).
+    #[must_use]
+    pub fn is_flat(&self) -> bool {
+        match self.source {
+            Source::Polygon(i) => coplanar(
+                &self.polygons[*i].corners,
+                &self.polygons[self.target].corners,
+            ),
+            Source::Cell { .. } => false,
+        }
+    }
+
     /// The polygons that may block: all occluders but source and target and what lies in the plane
     /// of either (semantics 5 and 6).
     pub fn blockers(&self) -> impl Iterator<Item = &'a [[i64; 3]]> {

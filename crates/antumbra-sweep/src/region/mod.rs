@@ -435,6 +435,8 @@ impl<'a> CellBake<'a> {
         }
         let budget = self.options.max_splits.unwrap_or(u64::MAX);
         let mut gates = Vec::new();
+        // Lines too thin for one pair of gates do not keep another from holding a free one.
+        let mut thin = false;
         for source in 0..self.source.gates.len() {
             for against in [false, true] {
                 let to = polygon_gate(&polygon, against);
@@ -463,7 +465,7 @@ impl<'a> CellBake<'a> {
                             self.record(source, u, v, id);
                             return Part::Visible;
                         }
-                        return Part::Unknown;
+                        thin = true;
                     }
                     Answer::Undecided(Undecided::Budget) => {
                         self.searcher.work.over_budget += 1;
@@ -471,10 +473,13 @@ impl<'a> CellBake<'a> {
                     }
                     Answer::Undecided(Undecided::Thin) => {
                         self.searcher.work.thin += 1;
-                        return Part::Unknown;
+                        thin = true;
                     }
                 }
             }
+        }
+        if thin {
+            return Part::Unknown;
         }
         self.claim(Target::Polygon(id), Reason::Gates(gates));
         Part::Hidden
