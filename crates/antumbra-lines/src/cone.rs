@@ -5,10 +5,8 @@
 //! follows the combinatorial adjacency test; new rays are computed directly from five defining
 //! rows, never from other rays, so that their size stays bounded.
 
+use crate::space::{PluckerSpace, RowId, VertexId};
 use antumbra_kernel::Sign;
-use dashu_int::IBig;
-
-use crate::space::{ExactVertex, PluckerSpace, RowId, VertexId, sign_of};
 
 /// One side of a hyperplane: `sign * row . x >= 0`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -334,35 +332,16 @@ impl Cone {
         } else {
             space.independent(&on, 4)
         };
-        if let &[a, b, c, d] = rows.as_slice()
-            && let Some(exact) = space.meet([a, b, c, d, h.row])
-        {
-            let vertex = space.push_vertex(exact);
-            // A facet that holds p but not n is strictly positive on every point between them.
-            if let Some(k) = bits(p.tight & !n.tight).next() {
-                let s = self.slots[k].orient(space.sign(self.slots[k].row, vertex));
-                if !s.is_zero() {
-                    if s.is_negative() {
-                        space.negate_vertex(vertex);
-                    }
-                    return Ray {
-                        vertex,
-                        tight: common,
-                    };
-                }
+        let vertex = match rows.as_slice() {
+            &[a, b, c, d] => space.cut_edge([a, b, c, d, h.row], p.vertex, n.vertex),
+            // The residues failed (never seen): a combination is always right, only wider.
+            _ => {
+                let exact = space.combination(h.row, [p.vertex, n.vertex]);
+                space.push_vertex(exact)
             }
-        }
-        // The residues failed (never seen): a positive combination is always right, only wider.
-        let (wp, wn) = (
-            space.exact_dot(h.row, n.vertex),
-            space.exact_dot(h.row, p.vertex),
-        );
-        let abs = |v: IBig| if sign_of(&v).is_negative() { -v } else { v };
-        let (wp, wn) = (abs(wp), abs(wn));
-        let (vp, vn) = (space.big_vertex(p.vertex), space.big_vertex(n.vertex));
-        let v = std::array::from_fn(|k| &vp[k] * &wp + &vn[k] * &wn);
+        };
         Ray {
-            vertex: space.push_vertex(ExactVertex::Wide(Box::new(v))),
+            vertex,
             tight: common,
         }
     }

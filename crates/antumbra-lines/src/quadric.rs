@@ -80,33 +80,29 @@ pub fn real_lines(space: &mut PluckerSpace, cone: &Cone) -> RealLines {
 
 /// Whether the open edge between two vertices with the same strict sign of Q and the opposite sign
 /// of B crosses the quadric: B^2 > 4 Q_i Q_j, with B = B(v_i, v_j) and Q = d . m.
-fn crosses_quadric(space: &PluckerSpace, v: VertexId, w: VertexId) -> bool {
-    // Rounded terms first: all three forms within 2^-47 of their sums of magnitudes.
-    let form = |a: &[f64; 6], b: &[f64; 6]| {
-        let mut sum = 0.0;
-        let mut magnitude = 0.0;
-        for k in 0..6 {
-            let t = a[k] * b[(k + 3) % 6];
-            sum += t;
-            magnitude += t.abs();
+fn crosses_quadric(space: &mut PluckerSpace, v: VertexId, w: VertexId) -> bool {
+    loop {
+        // B(v, v) is 2 Q(v), so the test is b^2 > q_v q_w; the errors of the three forms and the
+        // rounding of their products bound the error of the difference.
+        let ((b, e_b), (q_v, e_v), (q_w, e_w)) = (
+            space.bilinear(v, w),
+            space.bilinear(v, v),
+            space.bilinear(w, w),
+        );
+        let lead = b * b - q_v * q_w;
+        let rounding = (b * b + (q_v * q_w).abs()) * (1.0 / (1_u64 << 50) as f64);
+        let error = 2.0 * b.abs() * e_b + e_b * e_b + q_v.abs() * e_w + q_w.abs() * e_v + e_v * e_w;
+        let bound = 2.0 * (error + rounding);
+        if lead > bound {
+            return true;
         }
-        (sum, magnitude * (1.0 / (1_u64 << 47) as f64))
-    };
-    let (a, b) = (space.rounded_vertex(v), space.rounded_vertex(w));
-    let ((b_vw, e_b), (q_v, e_v), (q_w, e_w)) = (form(a, b), form(a, a), form(b, b));
-    // form(a, a) is 2 Q_v, so the test is b^2 > q_v q_w.
-    let lead = b_vw * b_vw - q_v * q_w;
-    let error = 2.0 * b_vw.abs() * e_b
-        + e_b * e_b
-        + q_v.abs() * e_w
-        + q_w.abs() * e_v
-        + e_v * e_w
-        + (b_vw * b_vw + (q_v * q_w).abs()) * (1.0 / (1_u64 << 50) as f64);
-    if lead > error * 2.0 {
-        return true;
-    }
-    if lead < -error * 2.0 {
-        return false;
+        if lead < -bound {
+            return false;
+        }
+        let (first, second) = (space.sharpen(v), space.sharpen(w));
+        if !(first || second) {
+            break;
+        }
     }
     let b = space.big_bilinear(v, w);
     let q = space.big_bilinear(v, v) * space.big_bilinear(w, w);

@@ -4,6 +4,7 @@
 //! rounded to doubles. A sign is decided by the doubles where their error bound allows it and by
 //! the integers otherwise.
 
+use std::cell::OnceCell;
 use std::collections::HashMap;
 
 use antumbra_kernel::plucker::{self, Row};
@@ -43,12 +44,32 @@ struct RowData {
     exact: ExactRow,
     /// Larger than an edge row, as caps are: at most two of these define a narrow vertex.
     large: bool,
+    /// Sums of the magnitudes of the coefficients that meet directions and moments.
+    size: [f64; 2],
+}
+
+fn size(rounded: &[f64; 6]) -> [f64; 2] {
+    let sum = |k: usize| rounded[k].abs() + rounded[k + 1].abs() + rounded[k + 2].abs();
+    [sum(0), sum(3)]
+}
+
+/// How a vertex came to be, so that its exact coordinates can wait until a sign needs them.
+#[derive(Clone, Copy, Debug)]
+struct Origin {
+    /// Five independent rows that it lies on.
+    rows: [RowId; 5],
+    /// The ends of the edge that the last row cuts; the vertex is a positive combination of them.
+    ends: [VertexId; 2],
 }
 
 #[derive(Clone, Debug)]
 struct VertexData {
     rounded: [f64; 6],
-    exact: ExactVertex,
+    /// Bounds of the absolute errors of `rounded`, direction and moment apart; zero where it was
+    /// rounded from the exact coordinates (then each is within a relative 2^-52).
+    error: [f64; 2],
+    exact: OnceCell<ExactVertex>,
+    origin: Option<Origin>,
 }
 
 /// Rows and vertices of one query. Rows that describe the same hyperplane are stored once.
@@ -105,6 +126,7 @@ impl RowData {
             rounded: row.map(|c| c as f64),
             exact,
             large: !below(&row, EDGE),
+            size: size(&row.map(|c| c as f64)),
         }
     }
 }
@@ -172,11 +194,12 @@ impl PluckerSpace {
             return Halfspace { row: id, negative };
         }
         let id = RowId(self.rows.len() as u32);
-        let rounded = std::array::from_fn(|k| row[k].to_f64().value());
+        let rounded: [f64; 6] = std::array::from_fn(|k| row[k].to_f64().value());
         self.rows.push(RowData {
             rounded,
             exact: ExactRow::Wide(Box::new(row)),
             large: true,
+            size: size(&rounded),
         });
         Halfspace {
             row: id,
@@ -203,8 +226,155 @@ impl PluckerSpace {
         &self.rows[row.0 as usize].exact
     }
 
+    /// The exact coordinates, computed now if no sign has needed them yet.
     pub(crate) fn exact_vertex(&self, vertex: VertexId) -> &ExactVertex {
-        &self.vertices[vertex.0 as usize].exact
+        let data = &self.vertices[vertex.0 as usize];
+        data.exact.get_or_init(|| match data.origin {
+            Some(origin) => self.compute(data, origin),
+            None => unreachable!("a vertex without an origin is pushed with its coordinates"),
+        })
+    }
+
+    fn compute(&self, data: &VertexData, origin: Origin) -> ExactVertex {
+        let Some(exact) = self.meet(origin.rows) else {
+            return self.combination(origin.rows[4], origin.ends);
+        };
+        // The cofactors are known up to their sign; the rounded vertex has a coordinate that is
+        // certain, since its error was bounded when it was accepted.
+        let surest = (0..6)
+            .max_by(|&i, &j| {
+                let trust =
+                    |k: usize| data.rounded[k].abs() / data.error[k / 3].max(f64::MIN_POSITIVE);
+                trust(i).total_cmp(&trust(j))
+            })
+            .unwrap_or(0);
+        self.oriented(exact, origin, Some((surest, data.rounded[surest] < 0.0)))
+    }
+
+    /// The positive combination of two vertices on both sides of a row that lies on the row.
+    pub(crate) fn combination(&self, row: RowId, [p, n]: [VertexId; 2]) -> ExactVertex {
+        let abs = |v: IBig| if sign_of(&v).is_negative() { -v } else { v };
+        let (wp, wn) = (abs(self.exact_dot(row, n)), abs(self.exact_dot(row, p)));
+        let (vp, vn) = (self.big_vertex(p), self.big_vertex(n));
+        ExactVertex::Wide(Box::new(std::array::from_fn(|k| {
+            &vp[k] * &wp + &vn[k] * &wn
+        })))
+    }
+
+    /// Replaces a vertex's doubles by the exact coordinates, rounded. False if they were already.
+    pub(crate) fn sharpen(&mut self, vertex: VertexId) -> bool {
+        if self.vertices[vertex.0 as usize].error == [0.0; 2] {
+            return false;
+        }
+        let rounded = round_vertex(self.exact_vertex(vertex));
+        let data = &mut self.vertices[vertex.0 as usize];
+        data.rounded = rounded;
+        data.error = [0.0; 2];
+        true
+    }
+
+    /// The rounded dot product of a row and a vertex, and a bound of its error.
+    ///
+    /// Six terms, each factor within 2^-52 of the truth, err by less than 2^-48 of the sum of their
+    /// magnitudes (2 * 2^-52 for the factors, 2^-53 for each product, 5 * 2^-53 for the additions:
+    /// below 2^-49; the sum of magnitudes is itself rounded). What the vertex errs beyond that is
+    /// multiplied by the row's coefficients; the factor 1.01 covers the rounding of the bound.
+    #[inline]
+    fn dot(&self, row: RowId, vertex: VertexId) -> (f64, f64) {
+        let row = &self.rows[row.0 as usize];
+        let data = &self.vertices[vertex.0 as usize];
+        let mut sum = 0.0;
+        let mut magnitude = 0.0;
+        for k in 0..6 {
+            let t = row.rounded[k] * data.rounded[k];
+            sum += t;
+            magnitude += t.abs();
+        }
+        let beyond = row.size[0] * data.error[0] + row.size[1] * data.error[1];
+        (sum, magnitude * FILTER + beyond * 1.01)
+    }
+
+    /// Adds the vertex in which a row cuts the edge between two vertices, p where the row is
+    /// positive up to `sign`, n where it is negative; `rows` are five independent rows it lies on.
+    ///
+    /// In doubles first: w = l p + (1 - l) n with l = s_n / (s_p + s_n) from the rounded products
+    /// s. If both are four times their error bounds e, l errs by less than
+    /// 2 l (1 - l) (e_p / s_p + e_n / s_n) + 2^-50; that times the distance of p and n, the ends'
+    /// own errors, and 2^-50 of the size for the rounding bound the error of w. Where the bound is
+    /// not far below the size, the exact coordinates are computed at once.
+    pub(crate) fn cut_edge(&mut self, rows: [RowId; 5], p: VertexId, n: VertexId) -> VertexId {
+        const TINY: f64 = 1.0 / (1_u64 << 50) as f64;
+        const TRUSTED: f64 = 1.0 / (1_u64 << 28) as f64;
+        let origin = Origin { rows, ends: [p, n] };
+        let ((sp, ep), (sn, en)) = (self.dot(rows[4], p), self.dot(rows[4], n));
+        let (sp, sn) = (sp.abs(), sn.abs());
+        let (a, b) = (&self.vertices[p.0 as usize], &self.vertices[n.0 as usize]);
+        let l = sn / (sp + sn);
+        let off = 2.0 * l * (1.0 - l) * (ep / sp + en / sn) + TINY;
+        let rounded: [f64; 6] =
+            std::array::from_fn(|k| l * a.rounded[k] + (1.0 - l) * b.rounded[k]);
+        let mut error = [0.0; 2];
+        let mut trusted = sp > 4.0 * ep && sn > 4.0 * en;
+        for part in 0..2 {
+            let largest = |v: &[f64; 6]| {
+                (3 * part..3 * part + 3)
+                    .map(|k| v[k].abs())
+                    .fold(0.0, f64::max)
+            };
+            let (la, lb, lw) = (largest(&a.rounded), largest(&b.rounded), largest(&rounded));
+            let own = |e: f64, size: f64| e + size * TINY;
+            error[part] = (l * own(a.error[part], la)
+                + (1.0 - l) * own(b.error[part], lb)
+                + off * (la + lb)
+                + la.max(lb) * TINY)
+                * 1.01;
+            trusted &= error[part] < TRUSTED * lw;
+        }
+        if trusted {
+            let data = VertexData {
+                rounded,
+                error,
+                exact: OnceCell::new(),
+                origin: Some(origin),
+            };
+            self.vertices.push(data);
+            return VertexId((self.vertices.len() - 1) as u32);
+        }
+        let exact = match self.meet(rows) {
+            Some(exact) => {
+                let certain = (0..6).find(|&k| rounded[k].abs() > 2.0 * error[k / 3]);
+                let k = certain.filter(|_| sp > 4.0 * ep && sn > 4.0 * en);
+                self.oriented(exact, origin, k.map(|k| (k, rounded[k] < 0.0)))
+            }
+            None => self.combination(rows[4], origin.ends),
+        };
+        self.push_vertex(exact)
+    }
+
+    /// Gives cofactors the sign of the positive combination that they are: by a coordinate whose
+    /// sign is known, else by the combination itself.
+    fn oriented(
+        &self,
+        exact: ExactVertex,
+        origin: Origin,
+        known: Option<(usize, bool)>,
+    ) -> ExactVertex {
+        let sign = |v: &ExactVertex, k: usize| match v {
+            ExactVertex::Narrow(v) => v[k].sign(),
+            ExactVertex::Wide(v) => sign_of(&v[k]),
+        };
+        let (k, negative) = known.unwrap_or_else(|| {
+            let reference = self.combination(origin.rows[4], origin.ends);
+            let k = (0..6)
+                .find(|&k| !sign(&reference, k).is_zero())
+                .unwrap_or(0);
+            (k, sign(&reference, k).is_negative())
+        });
+        if sign(&exact, k).is_negative() == negative {
+            exact
+        } else {
+            negated(exact)
+        }
     }
 
     /// The coordinates of a vertex as big integers.
@@ -225,29 +395,21 @@ impl PluckerSpace {
         }
     }
 
-    /// The sign of `row . vertex`.
-    ///
-    /// The rounded dot product of six terms, each factor within 2^-52 of the truth, errs by less
-    /// than 2^-48 of the sum of the terms' magnitudes (2 * 2^-52 for the factors, 2^-53 for each
-    /// product, 5 * 2^-53 for the additions: below 2^-49; the sum of magnitudes is itself rounded).
+    /// The sign of `row . vertex`: by doubles where their error bound allows it, else exact.
     #[inline]
     #[must_use]
     pub fn sign(&mut self, row: RowId, vertex: VertexId) -> Sign {
-        let h = &self.rows[row.0 as usize].rounded;
-        let v = &self.vertices[vertex.0 as usize].rounded;
-        let mut sum = 0.0;
-        let mut magnitude = 0.0;
-        for k in 0..6 {
-            let t = h[k] * v[k];
-            sum += t;
-            magnitude += t.abs();
-        }
-        let bound = magnitude * FILTER;
-        if sum > bound {
-            return Sign::Positive;
-        }
-        if sum < -bound {
-            return Sign::Negative;
+        loop {
+            let (sum, bound) = self.dot(row, vertex);
+            if sum > bound {
+                return Sign::Positive;
+            }
+            if sum < -bound {
+                return Sign::Negative;
+            }
+            if !self.sharpen(vertex) {
+                break;
+            }
         }
         self.exact_signs += 1;
         self.exact_sign(row, vertex)
@@ -276,20 +438,18 @@ impl PluckerSpace {
     /// Filter as in [`PluckerSpace::sign`].
     #[must_use]
     pub fn bilinear_sign(&mut self, v: VertexId, w: VertexId) -> Sign {
-        let (a, b) = (self.rounded_vertex(v), self.rounded_vertex(w));
-        let mut sum = 0.0;
-        let mut magnitude = 0.0;
-        for k in 0..6 {
-            let t = a[k] * b[(k + 3) % 6];
-            sum += t;
-            magnitude += t.abs();
-        }
-        let bound = magnitude * FILTER;
-        if sum > bound {
-            return Sign::Positive;
-        }
-        if sum < -bound {
-            return Sign::Negative;
+        loop {
+            let (sum, bound) = self.bilinear(v, w);
+            if sum > bound {
+                return Sign::Positive;
+            }
+            if sum < -bound {
+                return Sign::Negative;
+            }
+            let (first, second) = (self.sharpen(v), self.sharpen(w));
+            if !(first || second) {
+                break;
+            }
         }
         self.exact_signs += 1;
         if let (ExactVertex::Narrow(a), ExactVertex::Narrow(b)) =
@@ -298,6 +458,23 @@ impl PluckerSpace {
             return plucker::bilinear(a, b).sign();
         }
         sign_of(&self.big_bilinear(v, w))
+    }
+
+    /// The rounded bilinear form of two vertices and a bound of its error (see [`PluckerSpace::dot`]).
+    pub(crate) fn bilinear(&self, v: VertexId, w: VertexId) -> (f64, f64) {
+        let (a, b) = (&self.vertices[v.0 as usize], &self.vertices[w.0 as usize]);
+        let mut sum = 0.0;
+        let mut magnitude = 0.0;
+        let mut beyond = 0.0;
+        for k in 0..6 {
+            let j = (k + 3) % 6;
+            let t = a.rounded[k] * b.rounded[j];
+            let (ea, eb) = (a.error[k / 3], b.error[j / 3]);
+            sum += t;
+            magnitude += t.abs();
+            beyond += a.rounded[k].abs() * eb + b.rounded[j].abs() * ea + ea * eb;
+        }
+        (sum, magnitude * FILTER + beyond * 1.01)
     }
 
     /// The bilinear form of two vertices as a big integer.
@@ -342,21 +519,22 @@ impl PluckerSpace {
 
     pub(crate) fn push_vertex(&mut self, exact: ExactVertex) -> VertexId {
         let rounded = round_vertex(&exact);
-        self.vertices.push(VertexData { rounded, exact });
+        let exact = OnceCell::from(exact);
+        self.vertices.push(VertexData {
+            rounded,
+            error: [0.0; 2],
+            exact,
+            origin: None,
+        });
         VertexId((self.vertices.len() - 1) as u32)
     }
 
-    /// Turns a vertex into its opposite.
+    /// Turns a vertex that was pushed with its coordinates into its opposite.
     pub(crate) fn negate_vertex(&mut self, vertex: VertexId) {
         let data = &mut self.vertices[vertex.0 as usize];
         data.rounded = data.rounded.map(|c| -c);
-        match &mut data.exact {
-            ExactVertex::Narrow(v) => *v = v.map(|c| -c),
-            ExactVertex::Wide(v) => {
-                for c in v.iter_mut() {
-                    *c = -c.clone();
-                }
-            }
+        if let Some(exact) = data.exact.take() {
+            data.exact = OnceCell::from(negated(exact));
         }
     }
 
@@ -400,7 +578,14 @@ impl PluckerSpace {
     }
 }
 
-/// Relative error bound of the filters, proved at [`PluckerSpace::sign`].
+fn negated(vertex: ExactVertex) -> ExactVertex {
+    match vertex {
+        ExactVertex::Narrow(v) => ExactVertex::Narrow(v.map(|c| -c)),
+        ExactVertex::Wide(v) => ExactVertex::Wide(Box::new(v.map(|c| -c))),
+    }
+}
+
+/// Relative error bound of the filters, proved at [`PluckerSpace::dot`].
 const FILTER: f64 = 1.0 / (1_u64 << 48) as f64;
 
 /// The Mersenne prime 2^61 - 1.

@@ -167,3 +167,49 @@ fn real_lines_that_touch_no_edge_are_found() {
     assert!(one_sign, "the vertices alone must not decide");
     assert_eq!(real_lines(&mut space, &cone), RealLines::Some);
 }
+
+/// Signs decided by doubles agree with big integers, along chains of cuts whose vertices were never
+/// computed exactly.
+#[test]
+fn rounded_vertices_never_change_a_sign() {
+    let mut rng = Random(23);
+    let mut compared = 0;
+    for round in 0..60 {
+        let reach = [3, 1 << 12, 1 << 22][round % 3];
+        let (Some(a), Some(b)) = (
+            triangle(&mut rng, reach, 0, 0),
+            triangle(&mut rng, reach, reach, reach / 4),
+        ) else {
+            continue;
+        };
+        let mut space = PluckerSpace::new();
+        let Ok(start) = start_halfspaces(&mut space, &a, &b) else {
+            continue;
+        };
+        let mut cone = Cone::new(&mut space, &start.halfspaces).expect("pointed");
+        let mut rows = Vec::new();
+        for _ in 0..14 {
+            let (u, v) = (rng.point(reach, reach / 2), rng.point(reach, reach / 3));
+            if u == v {
+                continue;
+            }
+            let h = space.halfspace(&edge_row(u, v), false);
+            rows.push(h.row);
+            if let Split::Both(inside, outside) = cone.split(&mut space, h).expect("few facets") {
+                cone = if rng.below(2) == 0 { inside } else { outside };
+            }
+        }
+        for vertex in cone.vertices().collect::<Vec<_>>() {
+            for &row in &rows {
+                let sign = space.sign(row, vertex);
+                let exact = space.exact_dot(row, vertex);
+                assert_eq!(sign, Sign::of_ordering(exact.cmp(&0.into())));
+                compared += 1;
+            }
+            let sign = space.bilinear_sign(vertex, vertex);
+            let exact = space.big_bilinear(vertex, vertex);
+            assert_eq!(sign, Sign::of_ordering(exact.cmp(&0.into())));
+        }
+    }
+    assert!(compared > 3000, "only {compared} signs were compared");
+}
