@@ -22,9 +22,9 @@ use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestRng, TestRu
 
 use crate::scenes::note;
 
-/// Of this many scenes with coordinates one step off the raster, one may hold a set of lines too
-/// thin for a line through fine points. On the raster nothing may be unknown.
-const RARE: u32 = 1000;
+/// Of this many scenes with coordinates one step off the raster, one may hold an object whose free
+/// lines are too thin for a line through fine points. On the raster nothing may be unknown.
+const RARE: u32 = 300;
 /// The frame that all these scenes lie in, so that their grids are the same.
 const FRAME: f64 = 4_000_000.0;
 
