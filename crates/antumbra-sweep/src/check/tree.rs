@@ -98,7 +98,7 @@ impl Walk<'_> {
                 let Some((_, name)) = rows.iter().find(|(row, _)| !piece.within(row)) else {
                     return Ok(());
                 };
-                if self.settled(piece, |p| rows.iter().all(|(row, _)| p.within(row))) {
+                if real_lines_within(piece, rows.iter().map(|(row, _)| row)) {
                     return Ok(());
                 }
                 let way = if negative { "against" } else { "along" };
@@ -291,4 +291,25 @@ fn normals_agree(a: &Plane, b: &Plane) -> bool {
         .map(|k| i128::from(a.normal[k]) * i128::from(b.normal[k]))
         .sum::<i128>()
         > 0
+}
+
+/// Whether all real lines of a piece satisfy some rows. A row may fail on imaginary points, which
+/// depend on the caps that were chosen: the part outside of it must hold no real line.
+fn real_lines_within<'a>(mut piece: Piece, rows: impl Iterator<Item = &'a Hyperplane>) -> bool {
+    for row in rows {
+        if piece.within(row) {
+            continue;
+        }
+        let Ok([inside, outside]) = piece.cut(row) else {
+            return false;
+        };
+        if outside.is_some_and(|part| part.holds_real_lines()) {
+            return false;
+        }
+        match inside {
+            Some(part) => piece = part,
+            None => return true,
+        }
+    }
+    true
 }
