@@ -100,7 +100,7 @@ const RECENT: usize = 12;
 /// Draws of lines from a cone before it is given up as too thin for doubles.
 const PATIENCE: usize = 50;
 /// Lines sampled in a cone.
-const SAMPLES: usize = 8;
+const SAMPLES: usize = 12;
 
 enum Slot {
     Open,
