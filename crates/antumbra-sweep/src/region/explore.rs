@@ -4,7 +4,9 @@
 //! that hold nothing visible. So the hierarchy is first walked with rays alone: into boxes that
 //! some ray reaches, and at the objects in them.
 
-use antumbra_scene::{ObjectId, PolygonId, TargetKind};
+use std::ops::Range;
+
+use antumbra_scene::{PolygonId, TargetKind};
 
 use super::boxes::Boxed;
 use super::source::random_ray;
@@ -22,7 +24,8 @@ impl CellBake<'_> {
     pub(super) fn explore(&mut self, index: u32) {
         let node = *self.baker.targets.node(index);
         if let Some(object) = node.object {
-            self.aim_at(object);
+            let polygons = self.baker.scene().object(object).polygons.clone();
+            self.aim_at(polygons, AIMED);
             return;
         }
         for _ in 0..BOX_TRIES {
@@ -53,14 +56,15 @@ impl CellBake<'_> {
         }
     }
 
-    fn aim_at(&mut self, object: ObjectId) {
+    /// Casts rays at random points of an object's polygons until one is seen.
+    pub(super) fn aim_at(&mut self, polygons: Range<u32>, rays: usize) {
         let scene = self.baker.scene();
-        let polygons = scene.object(object).polygons.clone();
         let n = self.source.gates.len();
         if n == 0 || polygons.is_empty() {
             return;
         }
-        for _ in 0..AIMED {
+        let object = scene.polygon(PolygonId(polygons.start)).object;
+        for _ in 0..rays {
             if !self.undecided(object) {
                 return;
             }

@@ -128,7 +128,9 @@ impl Baker<'_> {
         let source = Source::of_polygons(scene, from);
         let mut bake = CellBake::new(self, source, "pair", options);
         bake.live = Live::only(&self.targets, scene.objects().len(), object);
+        bake.aim_at(to.polygons(scene), PAIR_RAYS);
         let root = match to {
+            _ if !bake.undecided(object) => None,
             Surface::Polygon(id) => {
                 let part = bake.prove_polygon(id);
                 bake.settle(object, part);
@@ -170,6 +172,8 @@ pub(crate) struct CellBake<'a> {
     fresh: Vec<Witness>,
 }
 
+/// Rays at the target of a pair before a proof is tried; a ray costs a hundredth of one.
+const PAIR_RAYS: usize = 96;
 /// Free lines into a box that may be followed before its children are asked.
 pub(super) const BOX_TRIES: usize = 6;
 
