@@ -9,7 +9,7 @@ mod space;
 mod start;
 mod thin;
 
-pub use cone::{Cone, ConeError, Halfspace, Split};
+pub use cone::{Cone, ConeError, Halfspace, RaySigns, Split};
 pub use quadric::{RealLines, real_lines};
 pub use space::{PluckerSpace, RowId, VertexId};
 pub use start::{Chord, Gate, Start, common_line, common_line_row, start_halfspaces};

@@ -591,8 +591,15 @@ const FILTER: f64 = 1.0 / (1_u64 << 48) as f64;
 /// The Mersenne prime 2^61 - 1.
 const PRIME: u64 = (1 << 61) - 1;
 
+/// For factors below the prime: 2^61 is 1 modulo 2^61 - 1, so the high part is added to the low one.
 fn mul_mod(a: u64, b: u64) -> u64 {
-    (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64
+    let product = u128::from(a) * u128::from(b);
+    let folded = (product as u64 & PRIME) + (product >> 61) as u64;
+    if folded >= PRIME {
+        folded - PRIME
+    } else {
+        folded
+    }
 }
 
 fn sub_mod(a: u64, b: u64) -> u64 {

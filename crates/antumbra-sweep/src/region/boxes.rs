@@ -14,7 +14,7 @@ use crate::proof::{GateProof, Reason};
 use crate::search::{Answer, Question};
 
 /// Splits that a box may cost before its children are asked instead.
-const BOX_BUDGET: u64 = 1500;
+const BOX_BUDGET: u64 = 6000;
 
 pub(super) enum Boxed {
     Hidden(Reason),
@@ -79,7 +79,7 @@ impl CellBake<'_> {
 
     /// A few rays at a box: most boxes that cannot be hidden show it at once, and a ray costs a
     /// hundredth of a split.
-    fn probe_box(&mut self, bounds: &Aabb) -> Option<Boxed> {
+    pub(super) fn probe_box(&mut self, bounds: &Aabb) -> Option<Boxed> {
         const PROBES: usize = 24;
         let caster = &self.baker.caster;
         let absent = self.source.absent.clone();
@@ -106,7 +106,8 @@ impl CellBake<'_> {
                 .filter(|&k| d[k] != 0.0)
                 .map(|k| ((lo[k] - p[k]) / d[k]).min((hi[k] - p[k]) / d[k]))
                 .fold(0.0, f64::max);
-            let hit = caster.first_hit(&segment, (0.0, enter), |id| {
+            // What lies in the box's own front does not stand before it.
+            let hit = caster.first_hit(&segment, (0.0, enter * (1.0 - 1e-9)), |id| {
                 caster.occludes(id) && !absent.contains(&id.0)
             });
             if hit.is_none() {

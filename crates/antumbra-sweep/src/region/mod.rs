@@ -6,6 +6,7 @@
 //! by claims that the checker verifies.
 
 mod boxes;
+mod explore;
 mod rays;
 mod source;
 
@@ -94,6 +95,7 @@ impl<'a> Baker<'a> {
         bake.find_touching();
         bake.cast_rays();
         if let Some(root) = self.targets.root() {
+            bake.explore(root);
             bake.prove_group(root);
         }
         bake.finish()
@@ -174,7 +176,7 @@ pub(crate) struct CellBake<'a> {
 }
 
 /// Free lines into a box that may be followed before its children are asked.
-const BOX_TRIES: usize = 6;
+pub(super) const BOX_TRIES: usize = 6;
 
 impl<'a> CellBake<'a> {
     fn new(baker: &'a Baker<'a>, source: Source, name: &str, options: &'a BakeOptions) -> Self {
@@ -304,7 +306,7 @@ impl<'a> CellBake<'a> {
     }
 
     /// The box around everything undecided below a node.
-    fn live_bounds(&self, index: u32) -> Option<Aabb> {
+    pub(super) fn live_bounds(&self, index: u32) -> Option<Aabb> {
         let node = self.baker.targets.node(index);
         match (node.object, node.kind) {
             (Some(object), _) => self.undecided(object).then_some(node.bounds),
@@ -332,7 +334,7 @@ impl<'a> CellBake<'a> {
         }
     }
 
-    fn distance(&self, index: u32) -> i64 {
+    pub(super) fn distance(&self, index: u32) -> i64 {
         let (a, b) = (&self.source.bounds, &self.baker.targets.node(index).bounds);
         let (alo, ahi, blo, bhi) = (
             a.min.to_i64(),

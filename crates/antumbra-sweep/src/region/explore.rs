@@ -1,0 +1,99 @@
+//! Aimed rays: what is visible is found before anything is proved hidden.
+//!
+//! A proof pays most where it hides everything left at once, and it can only be tried on boxes
+//! that hold nothing visible. So the hierarchy is first walked with rays alone: into boxes that
+//! some ray reaches, and at the objects in them.
+
+use antumbra_scene::{ObjectId, PolygonId, TargetKind};
+
+use super::boxes::Boxed;
+use super::source::random_ray;
+use super::{BOX_TRIES, CellBake};
+use crate::caster::Segment;
+
+/// Rays at each object that a ray may reach.
+const AIMED: usize = 24;
+
+impl CellBake<'_> {
+    /// Casts rays at what is undecided below a node; records what they see.
+    pub(super) fn explore(&mut self, index: u32) {
+        let node = *self.baker.targets.node(index);
+        for _ in 0..BOX_TRIES {
+            if self.cancelled() {
+                return;
+            }
+            let Some(bounds) = self.live_bounds(index) else {
+                return;
+            };
+            if self.source.bounds.touches(&bounds) {
+                break;
+            }
+            match self.probe_box(&bounds) {
+                None => return,
+                Some(Boxed::Seen) => {}
+                Some(_) => break,
+            }
+        }
+        match (node.object, node.kind) {
+            (Some(object), _) => self.aim_at(object),
+            (None, TargetKind::Inner(a, b)) => {
+                let (a, b) = if self.distance(a) <= self.distance(b) {
+                    (a, b)
+                } else {
+                    (b, a)
+                };
+                self.explore(a);
+                self.explore(b);
+            }
+            (None, TargetKind::Polygon(_)) => {}
+        }
+    }
+
+    fn aim_at(&mut self, object: ObjectId) {
+        let scene = self.baker.scene();
+        let polygons = scene.object(object).polygons.clone();
+        let n = self.source.gates.len();
+        if n == 0 || polygons.is_empty() {
+            return;
+        }
+        for _ in 0..AIMED {
+            if !self.undecided(object) {
+                return;
+            }
+            let source = (self.rng.bits() % n as u64) as usize;
+            let polygon = polygons.start + (self.rng.bits() % polygons.len() as u64) as u32;
+            let q = self.random_point(PolygonId(polygon));
+            let gate = &self.source.gates[source].gate;
+            let (p, _) = random_ray(gate, &mut self.rng);
+            let d: [f64; 3] = std::array::from_fn(|k| q[k] - p[k]);
+            if crate::caster::dot(gate.plane.normal.map(|c| c as f64), d) <= 0.0 {
+                continue;
+            }
+            let caster = &self.baker.caster;
+            let absent = &self.source.absent;
+            let segment = Segment::new(p, q);
+            let hit = caster.first_hit(&segment, (0.0, 1.0 - 1e-9), |id| {
+                caster.occludes(id) && !absent.contains(&id.0)
+            });
+            if hit.is_none() {
+                self.confirm(source, p, q, PolygonId(polygon));
+            }
+        }
+    }
+
+    /// A point inside a polygon: a random positive combination of its corners.
+    fn random_point(&mut self, id: PolygonId) -> [f64; 3] {
+        let polygon = self.baker.scene().polygon(id);
+        let mut sum = [0.0; 3];
+        let mut total = 0.0;
+        for corner in polygon.corners {
+            let w = self.rng.unit() + 1e-3;
+            total += w;
+            let c = corner.to_f64();
+            for k in 0..3 {
+                sum[k] += w * c[k];
+            }
+        }
+        sum.map(|c| c / total)
+    }
+}
