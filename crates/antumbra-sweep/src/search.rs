@@ -100,7 +100,7 @@ const RECENT: usize = 12;
 /// Draws of lines from a cone before it is given up as too thin for doubles.
 const PATIENCE: usize = 50;
 /// Lines sampled in a cone.
-const SAMPLES: usize = 8;
+const SAMPLES: usize = 12;
 
 enum Slot {
     Open,
@@ -305,15 +305,47 @@ impl Searcher {
             .collect()
     }
 
-    /// The occluder that blocks most sampled lines, with the direction in which it is crossed; or
-    /// a free line as an answer.
+    /// The occluder that blocks most sampled lines of those whose blocker cones meet the cone; or a
+    /// free line as an answer.
     fn choose(
         &mut self,
         frame: &mut Frame<'_>,
         cone: &Cone,
         segments: &[Segment],
     ) -> Result<Blocking, Answer> {
-        let question = frame.question;
+        // Doubles see a line blocked that only touches an occluder, at the rim of the cone or in
+        // the target's plane. Such an occluder must not keep others from being asked.
+        let mut refused: Vec<(PolygonId, bool)> = Vec::new();
+        loop {
+            let tally = self.votes(frame.question, segments, &refused)?;
+            let before = refused.len();
+            while let Some((id, negative)) = tally.best(&refused) {
+                if let Some(cuts) = self.cuts(frame, cone, id, negative) {
+                    return Ok(Blocking {
+                        polygon: id,
+                        negative,
+                        cuts,
+                    });
+                }
+                refused.push((id, negative));
+            }
+            if refused.len() == before {
+                return Err(Answer::Undecided(Undecided::Thin));
+            }
+        }
+    }
+
+    /// Which occluders block how many of the sampled lines, those refused apart; or a free line as
+    /// an answer.
+    fn votes(
+        &self,
+        question: &Question<'_>,
+        segments: &[Segment],
+        refused: &[(PolygonId, bool)],
+    ) -> Result<Tally, Answer> {
+        let blocked = |id: PolygonId, s: &Segment| {
+            blocks(question, id, s).filter(|&negative| !refused.contains(&(id, negative)))
+        };
         // Known blockers first: the scene is asked only about lines that none of them blocks.
         let mut tally = Tally::default();
         let mut candidates: Vec<(PolygonId, usize)> =
@@ -321,7 +353,7 @@ impl Searcher {
         for (i, s) in segments.iter().enumerate() {
             let mut any = false;
             for (id, _) in &candidates {
-                if let Some(negative) = blocks(question, *id, s) {
+                if let Some(negative) = blocked(*id, s) {
                     tally.add(*id, negative);
                     any = true;
                 }
@@ -334,7 +366,7 @@ impl Searcher {
                 .visit(s, (-1e-9, 1.0 + 1e-9), SAMPLING_SLACK, |items, _, _| {
                     for &id in items {
                         if candidates.iter().all(|c| c.0 != id)
-                            && let Some(negative) = blocks(question, id, s)
+                            && let Some(negative) = blocked(id, s)
                         {
                             any = true;
                             tally.add(id, negative);
@@ -360,26 +392,13 @@ impl Searcher {
         for &(id, found) in &candidates {
             if found < segments.len() {
                 for s in &segments[..found] {
-                    if let Some(negative) = blocks(question, id, s) {
+                    if let Some(negative) = blocked(id, s) {
                         tally.add(id, negative);
                     }
                 }
             }
         }
-        let mut refused: Vec<(PolygonId, bool)> = Vec::new();
-        loop {
-            let Some((id, negative, _)) = tally.best(&refused) else {
-                return Err(Answer::Undecided(Undecided::Thin));
-            };
-            if let Some(cuts) = self.cuts(frame, cone, id, negative) {
-                return Ok(Blocking {
-                    polygon: id,
-                    negative,
-                    cuts,
-                });
-            }
-            refused.push((id, negative));
-        }
+        Ok(tally)
     }
 
     /// The rows of an occluder's blocker cone with their signs on a cone, if the two meet inside.
@@ -516,12 +535,12 @@ impl Tally {
         }
     }
 
-    fn best(&self, refused: &[(PolygonId, bool)]) -> Option<(PolygonId, bool, u32)> {
+    fn best(&self, refused: &[(PolygonId, bool)]) -> Option<(PolygonId, bool)> {
         self.votes
             .iter()
             .filter(|v| !refused.contains(&(v.0, v.1)))
             .max_by_key(|v| (v.2, std::cmp::Reverse(v.0)))
-            .map(|v| (v.0, v.1, v.2))
+            .map(|v| (v.0, v.1))
     }
 }
 

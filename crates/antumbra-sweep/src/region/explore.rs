@@ -11,6 +11,9 @@ use super::source::random_ray;
 use super::{BOX_TRIES, CellBake};
 use crate::caster::Segment;
 
+/// Rays at the box around an object, and at most at one around many.
+const PROBES: usize = 24;
+const MOST_PROBES: usize = 600;
 /// Rays at each object that a ray may reach.
 const AIMED: usize = 24;
 
@@ -18,34 +21,35 @@ impl CellBake<'_> {
     /// Casts rays at what is undecided below a node; records what they see.
     pub(super) fn explore(&mut self, index: u32) {
         let node = *self.baker.targets.node(index);
+        if let Some(object) = node.object {
+            self.aim_at(object);
+            return;
+        }
         for _ in 0..BOX_TRIES {
             if self.cancelled() {
                 return;
             }
-            let Some(bounds) = self.live_bounds(index) else {
+            let Some(bounds) = self.live.bounds(index) else {
                 return;
             };
             if self.source.bounds.touches(&bounds) {
                 break;
             }
-            match self.probe_box(&bounds) {
+            let probes = PROBES + 4 * self.live.left(index) as usize;
+            match self.probe_box(&bounds, probes.min(MOST_PROBES)) {
                 None => return,
-                Some(Boxed::Seen) => {}
+                Some(Boxed::Seen) => self.look_around(),
                 Some(_) => break,
             }
         }
-        match (node.object, node.kind) {
-            (Some(object), _) => self.aim_at(object),
-            (None, TargetKind::Inner(a, b)) => {
-                let (a, b) = if self.distance(a) <= self.distance(b) {
-                    (a, b)
-                } else {
-                    (b, a)
-                };
-                self.explore(a);
-                self.explore(b);
-            }
-            (None, TargetKind::Polygon(_)) => {}
+        if let TargetKind::Inner(a, b) = node.kind {
+            let (a, b) = if self.distance(a) <= self.distance(b) {
+                (a, b)
+            } else {
+                (b, a)
+            };
+            self.explore(a);
+            self.explore(b);
         }
     }
 
@@ -77,6 +81,33 @@ impl CellBake<'_> {
             });
             if hit.is_none() {
                 self.confirm(source, p, q, PolygonId(polygon));
+            }
+        }
+    }
+
+    /// Casts rays beside those that were hard to find: what is seen through a small gap is seldom
+    /// alone there. After the mutation of rays in [Wonka06].
+    pub(super) fn look_around(&mut self) {
+        const BESIDE: usize = 24;
+        while let Some(witness) = self.fresh.pop() {
+            let source = self
+                .source
+                .gates
+                .iter()
+                .position(|g| g.number == witness.source);
+            let Some(source) = source else { continue };
+            let bounds = self.baker.scene().polygon(witness.polygon).bounds();
+            let (lo, hi) = (bounds.min.to_f64(), bounds.max.to_f64());
+            let from = witness.from.to_f64();
+            for _ in 0..BESIDE {
+                let (other, _) = random_ray(&self.source.gates[source].gate, &mut self.rng);
+                let r = 0.25 * self.rng.unit();
+                let p: [f64; 3] = std::array::from_fn(|k| from[k] + r * (other[k] - from[k]));
+                let q: [f64; 3] = std::array::from_fn(|k| {
+                    let t = 2.0 * self.rng.unit() - 0.5;
+                    lo[k] + t * (hi[k] - lo[k])
+                });
+                self.follow(source, p, std::array::from_fn(|k| q[k] - p[k]));
             }
         }
     }
