@@ -228,24 +228,53 @@ fn partition(items: &mut [Item]) -> usize {
         counts[b] += 1;
         boxes[b] = Some(boxes[b].map_or(item.bounds, |x| x.union(item.bounds)));
     }
+    let (below, above) = (running(&boxes, &counts), {
+        let (mut boxes, mut counts) = (boxes, counts);
+        boxes.reverse();
+        counts.reverse();
+        running(&boxes, &counts)
+    });
     let best = (1..BINS)
-        .filter(|&s| counts[..s].iter().sum::<usize>() > 0 && counts[s..].iter().sum::<usize>() > 0)
-        .min_by(|&s, &t| cost(&boxes, &counts, s).total_cmp(&cost(&boxes, &counts, t)));
+        .filter(|&s| below[s].count > 0 && above[BINS - s].count > 0)
+        .map(|s| (s, below[s].cost() + above[BINS - s].cost()))
+        .min_by(|(_, a), (_, b)| a.total_cmp(b))
+        .map(|(s, _)| s);
     let Some(best) = best else {
         return items.len() / 2;
     };
     items.sort_by_key(|i| bin(&i.bounds) >= best);
-    items.iter().take_while(|i| bin(&i.bounds) < best).count()
+    below[best].count
 }
 
-fn cost(boxes: &[Option<Aabb>; BINS], counts: &[usize; BINS], at: usize) -> f64 {
-    let half = |range: std::ops::Range<usize>| {
-        let n: usize = counts[range.clone()].iter().sum();
-        let bounds = boxes[range].iter().flatten().copied().reduce(Aabb::union);
-        bounds.map_or(0.0, |b| {
+/// The first so many bins together.
+#[derive(Clone, Copy, Default)]
+struct Part {
+    bounds: Option<Aabb>,
+    count: usize,
+}
+
+impl Part {
+    fn cost(&self) -> f64 {
+        self.bounds.map_or(0.0, |b| {
             let e = b.extent().map(|c| c as f64);
-            n as f64 * (e[0] * e[1] + e[1] * e[2] + e[2] * e[0])
+            self.count as f64 * (e[0] * e[1] + e[1] * e[2] + e[2] * e[0])
         })
-    };
-    half(0..at) + half(at..BINS)
+    }
+}
+
+/// For each number of bins, those before it together.
+fn running(boxes: &[Option<Aabb>; BINS], counts: &[usize; BINS]) -> [Part; BINS] {
+    let mut parts = [Part::default(); BINS];
+    for i in 1..BINS {
+        let before = parts[i - 1];
+        let bounds = match (before.bounds, boxes[i - 1]) {
+            (Some(a), Some(b)) => Some(a.union(b)),
+            (a, b) => a.or(b),
+        };
+        parts[i] = Part {
+            bounds,
+            count: before.count + counts[i - 1],
+        };
+    }
+    parts
 }
