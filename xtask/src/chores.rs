@@ -216,8 +216,7 @@ fn fuzz_targets(depth: Depth) -> Result<(), Failure> {
         "fuzz targets compile",
         cargo(&build).env("RUSTFLAGS", FUZZ_FLAGS),
     )?;
-    for file in names_in(&root().join("fuzz/fuzz_targets")) {
-        let target = file.trim_end_matches(".rs");
+    for target in fuzz_target_names(&root()) {
         let arguments = [
             "run",
             "--release",
@@ -226,7 +225,7 @@ fn fuzz_targets(depth: Depth) -> Result<(), Failure> {
             "--target",
             &host,
             "--bin",
-            target,
+            &target,
             "--",
             "-max_total_time=20",
         ];
@@ -236,6 +235,19 @@ fn fuzz_targets(depth: Depth) -> Result<(), Failure> {
         )?;
     }
     Ok(())
+}
+
+/// The files that hold a target; what targets have in common is a file beside them.
+fn fuzz_target_names(root: &Path) -> Vec<String> {
+    let folder = root.join("fuzz/fuzz_targets");
+    let is_target = |file: &String| {
+        let text = std::fs::read_to_string(folder.join(file)).unwrap_or_default();
+        text.contains("fuzz_target!(")
+    };
+    let files = names_in(&folder).into_iter().filter(is_target);
+    files
+        .map(|file| file.trim_end_matches(".rs").to_owned())
+        .collect()
 }
 
 fn has_cpp_compiler() -> bool {
@@ -258,4 +270,24 @@ fn host_triple() -> String {
         .unwrap_or_default();
     let host = text.lines().find_map(|l| l.strip_prefix("host: "));
     host.unwrap_or("x86_64-unknown-linux-gnu").to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::fuzz_target_names;
+    use crate::runner::root;
+
+    #[test]
+    fn every_fuzz_target_is_a_binary_of_its_manifest() {
+        let manifest = std::fs::read_to_string(root().join("fuzz/Cargo.toml")).expect("a manifest");
+        let targets = fuzz_target_names(&root());
+        let binaries = manifest.lines().filter(|line| *line == "[[bin]]").count();
+        assert_eq!(targets.len(), binaries);
+        for target in targets {
+            assert!(
+                manifest.contains(&format!("name = \"{target}\"")),
+                "{target}"
+            );
+        }
+    }
 }
