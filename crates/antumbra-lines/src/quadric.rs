@@ -126,30 +126,57 @@ fn holds_conic(space: &PluckerSpace, three: &[Halfspace; 3], others: &[Halfspace
     {
         return false;
     }
-    let outer: Vec<([IBig; 6], bool)> = others
-        .iter()
-        .map(|h| (space.big_row(h.row), h.negative))
-        .collect();
     // At most two transversals of the regulus meet another line, unless it lies on the quadric
     // surface of the three; so one try more than twice the number of rows finds a generic one.
-    for step in 0..2 * outer.len() as i64 + 2 {
-        let Some(line) = transversal(&rows, step) else {
-            continue;
-        };
-        let signs: Vec<Sign> = outer
-            .iter()
-            .map(|(r, negative)| {
-                let s = sign_of(&(0..6).map(|k| &r[k] * &line[k]).sum());
-                if *negative { s.flip() } else { s }
-            })
-            .collect();
-        if signs.iter().any(|s| s.is_zero()) {
-            continue;
+    for step in 0..2 * others.len() as i64 + 2 {
+        if let Some(side) = generic_transversal(space, &rows, others, step) {
+            return side.is_some();
         }
-        return signs.iter().all(|s| s.is_positive()) || signs.iter().all(|s| s.is_negative());
     }
     // Never reached by the count above; in doubt, lines are taken to be real.
     true
+}
+
+/// A transversal of three lines, oriented into some half-spaces: the outer option tells whether
+/// it lies on none of them, the inner one whether it lies strictly inside all.
+fn generic_transversal(
+    space: &PluckerSpace,
+    rows: &[[IBig; 6]],
+    others: &[Halfspace],
+    step: i64,
+) -> Option<Option<[IBig; 6]>> {
+    let line = transversal(rows, step)?;
+    let signs: Vec<Sign> = others
+        .iter()
+        .map(|h| {
+            let row = space.big_row(h.row);
+            let s = sign_of(&(0..6).map(|k| &row[k] * &line[k]).sum());
+            if h.negative { s.flip() } else { s }
+        })
+        .collect();
+    if signs.iter().any(|s| s.is_zero()) {
+        return None;
+    }
+    if signs.iter().all(|s| s.is_positive()) {
+        return Some(Some(line));
+    }
+    let backwards = signs.iter().all(|s| s.is_negative());
+    Some(backwards.then(|| line.map(|c| -c)))
+}
+
+/// A point inside a conic of real lines that lies wholly inside a 2-face of a cone: there Q has the
+/// sign that it has on no vertex. The sum of two lines of a regulus, which are skew.
+pub(crate) fn inside_conic(space: &PluckerSpace, cone: &Cone) -> Option<[IBig; 6]> {
+    cone.faces_on_three().iter().find_map(|(three, others)| {
+        if !holds_conic(space, three, others) {
+            return None;
+        }
+        let rows: Vec<[IBig; 6]> = three.iter().map(|h| space.big_row(h.row)).collect();
+        let mut lines = (0..4 * others.len() as i64 + 4)
+            .filter_map(|step| generic_transversal(space, &rows, others, step)?);
+        let (a, b) = (lines.next()?, lines.next()?);
+        Some(std::array::from_fn(|k| &a[k] + &b[k]))
+    })
 }
 
 /// The line through an integer point of the first line that meets the other two.

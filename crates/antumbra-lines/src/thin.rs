@@ -10,13 +10,14 @@ use dashu_int::IBig;
 use dashu_int::ops::BitTest;
 
 use crate::cone::Cone;
+use crate::quadric::inside_conic;
 use crate::space::{PluckerSpace, VertexId, sign_of};
 
 type Vector = [IBig; 6];
 
 /// A point strictly inside a cone, within about `2^-bits` of the Plücker quadric relative to its
-/// size. `weight` gives positive numbers that choose among the interior points. `None` if no two
-/// vertices span points of both signs (real lines may then fill a 2-face, which is not tried).
+/// size. `weight` gives positive numbers that choose among the interior points. `None` if the cone
+/// has no real lines.
 pub fn nearly_real(
     space: &mut PluckerSpace,
     cone: &Cone,
@@ -32,9 +33,15 @@ pub fn nearly_real(
         let w = IBig::from(weight().max(1));
         std::array::from_fn(|k| &sum[k] + &w * &p[k])
     });
-    let plus = move_inside(anchor(&points, Sign::Positive)?, &inner, Sign::Positive)?;
-    let minus = move_inside(anchor(&points, Sign::Negative)?, &inner, Sign::Negative)?;
-    let (mut a, mut b) = (plus, minus);
+    let start = |wanted| {
+        anchor(&points, wanted).or_else(|| {
+            let p = level(inside_conic(space, cone)?);
+            (sign_of(&form(&p, &p)) == wanted).then_some(p)
+        })
+    };
+    let plus = move_inside(start(Sign::Positive)?, &inner, Sign::Positive)?;
+    let minus = move_inside(start(Sign::Negative)?, &inner, Sign::Negative)?;
+    let (mut a, mut b) = like_sized(plus, minus);
     for _ in 0..bits {
         let middle: Vector = std::array::from_fn(|k| &a[k] + &b[k]);
         if sign_of(&form(&middle, &middle)).is_negative() {
@@ -59,15 +66,35 @@ fn level(v: Vector) -> Vector {
     v.map(|c| c << shift)
 }
 
-/// A point of the closed cone where Q has a sign: a vertex, or a point between two.
+/// Two vectors scaled by powers of two to like sizes, so that every halving between them counts.
+fn like_sized(a: Vector, b: Vector) -> (Vector, Vector) {
+    let size = |v: &Vector| v.iter().map(BitTest::bit_len).max().unwrap_or(0);
+    let (s, t) = (size(&a), size(&b));
+    let raise = |v: Vector, by: usize| v.map(|c| c << by);
+    (raise(a, t.saturating_sub(s)), raise(b, s.saturating_sub(t)))
+}
+
+/// A point of the closed cone where Q has a sign: a vertex, or a point between two; of all these
+/// the one where Q is largest for its size, since it can be moved farthest.
 fn anchor(points: &[Vector], wanted: Sign) -> Option<Vector> {
     let own: Vec<IBig> = points.iter().map(|p| form(p, p)).collect();
-    if let Some(i) = own.iter().position(|q| sign_of(q) == wanted) {
-        return Some(points[i].clone());
-    }
+    let mut best: Option<(isize, Vector)> = None;
+    let mut offer = |p: Vector| {
+        let q = form(&p, &p);
+        if sign_of(&q) == wanted {
+            let bits = |part: &[IBig]| part.iter().map(BitTest::bit_len).max().unwrap_or(0);
+            let merit = q.bit_len() as isize - (bits(&p[..3]) + bits(&p[3..])) as isize;
+            if best.as_ref().is_none_or(|b| merit > b.0) {
+                best = Some((merit, p));
+            }
+        }
+    };
     for i in 0..points.len() {
+        if sign_of(&own[i]) == wanted {
+            offer(points[i].clone());
+        }
         for j in 0..points.len() {
-            if i == j {
+            if i == j || sign_of(&own[i]) == wanted || sign_of(&own[j]) == wanted {
                 continue;
             }
             let b = form(&points[i], &points[j]);
@@ -75,20 +102,20 @@ fn anchor(points: &[Vector], wanted: Sign) -> Option<Vector> {
                 continue;
             }
             // form(x v_i + y v_j) = x^2 o_i + 2 x y b + y^2 o_j, best at x : y = |o_j| : |b|
-            // where o_j is not zero; where it is, y outweighs what o_i takes away.
+            // where o_j is not zero; where both are, in the middle; else y outweighs what o_i
+            // takes away.
             let size = |v: &IBig| if *v < IBig::ZERO { -v } else { v.clone() };
-            let (x, y) = if own[j] == IBig::ZERO {
-                (size(&b), size(&own[i]) + IBig::ONE)
-            } else {
-                (size(&own[j]), size(&b))
+            let (x, y) = match (own[i] == IBig::ZERO, own[j] == IBig::ZERO) {
+                (true, true) => (IBig::ONE, IBig::ONE),
+                (false, true) => (size(&b), size(&own[i])),
+                (_, false) => (size(&own[j]), size(&b)),
             };
-            let p: Vector = std::array::from_fn(|k| &x * &points[i][k] + &y * &points[j][k]);
-            if sign_of(&form(&p, &p)) == wanted {
-                return Some(p);
-            }
+            offer(std::array::from_fn(|k| {
+                &x * &points[i][k] + &y * &points[j][k]
+            }));
         }
     }
-    None
+    best.map(|b| b.1)
 }
 
 /// A point strictly inside, towards `inner`, where Q still has the sign.

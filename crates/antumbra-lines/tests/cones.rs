@@ -3,8 +3,11 @@
 use antumbra_kernel::plucker::{edge_row, line_through};
 use antumbra_kernel::{Plane, Point, Sign};
 use antumbra_lines::{
-    Cone, ConeError, Gate, PluckerSpace, RealLines, Split, real_lines, start_halfspaces,
+    Cone, ConeError, Gate, PluckerSpace, RealLines, Split, nearly_real, real_lines,
+    start_halfspaces,
 };
+use dashu_int::IBig;
+use dashu_int::ops::BitTest;
 
 struct Random(u64);
 
@@ -166,6 +169,21 @@ fn real_lines_that_touch_no_edge_are_found() {
     let one_sign = !signs.contains(&Sign::Positive) || !signs.contains(&Sign::Negative);
     assert!(one_sign, "the vertices alone must not decide");
     assert_eq!(real_lines(&mut space, &cone), RealLines::Some);
+    // One of them can be had, although vertices and edges show no point where Q has the other sign.
+    let mut weight = 0;
+    let line = nearly_real(&mut space, &cone, 160, || {
+        weight += 1;
+        weight
+    })
+    .expect("real lines");
+    for h in cone.halfspaces() {
+        let row = space.big_row(h.row);
+        let value: IBig = (0..6).map(|k| &row[k] * &line[k]).sum();
+        assert!((value > IBig::ZERO) != h.negative && value != IBig::ZERO);
+    }
+    let q: IBig = (0..3).map(|k| &line[k] * &line[k + 3]).sum();
+    let size = line.iter().map(BitTest::bit_len).max().unwrap_or(0);
+    assert!(q.bit_len() + 100 < 2 * size, "next to the quadric");
 }
 
 /// Signs decided by doubles agree with big integers, along chains of cuts whose vertices were never
