@@ -6,12 +6,12 @@
 //! nearness has a row of 86 bits and a scale of 63; the row of two planes' common line has 149 bits.
 
 use antumbra_kernel::{Aabb, Plane, Point, Sign};
-use antumbra_lines::{Cone3, Mark, Nearness, Occluder, OcclusionTree, Plane3, Space3};
+use antumbra_lines::{Cone3, Mark, Nearness, Occluder, OcclusionTree, Plane3, Slot, Space3};
 use antumbra_scene::PolygonRef;
 
 use super::boxes::outline;
-use super::point::{frame, orient};
-use super::view::{Region, Sides, View, none_beyond};
+use super::point::{EdgePlanes, frame, orient, roots};
+use super::view::{Region, Sides, View};
 
 /// All lines of one direction within a rectangle.
 #[derive(Clone, Debug)]
@@ -20,6 +20,7 @@ pub struct ParallelView {
     direction: [i32; 3],
     axes: [usize; 3],
     frame: Vec<[i64; 3]>,
+    edges: EdgePlanes,
 }
 
 /// The side of planes that a direction comes from.
@@ -27,9 +28,8 @@ pub struct ParallelView {
 pub struct ParallelSides([i32; 3]);
 
 impl Sides for ParallelSides {
-    fn behind(&self, bounds: &Aabb, plane: &Plane) -> bool {
-        let side = along(plane, self.0).flip();
-        side != Sign::Zero && none_beyond(bounds, plane, side)
+    fn away(&self, plane: &Plane) -> Sign {
+        Sign::of(product(plane, self.0))
     }
 }
 
@@ -37,10 +37,6 @@ fn product(plane: &Plane, d: [i32; 3]) -> i128 {
     (0..3)
         .map(|k| i128::from(plane.normal[k]) * i128::from(d[k]))
         .sum()
-}
-
-fn along(plane: &Plane, d: [i32; 3]) -> Sign {
-    Sign::of(product(plane, d))
 }
 
 impl ParallelView {
@@ -60,6 +56,7 @@ impl ParallelView {
             direction,
             axes: [a, (a + 1) % 3, (a + 2) % 3],
             frame: Vec::new(),
+            edges: EdgePlanes::default(),
         };
         let images = around.corners().map(|p| view.image(p));
         let low = |k: usize| images.iter().map(|p| p[k]).min().unwrap_or(0) - 1;
@@ -141,8 +138,19 @@ impl View for ParallelView {
         };
         let occluder = self.space.occluder(nearness, polygon.id.0);
         let mut images: Vec<[i64; 3]> = polygon.corners.iter().map(|&p| self.image(p)).collect();
+        let first = images[0];
         orient(&mut images);
-        Some((self.space.cone(&images), occluder))
+        let cone = self.space.cone(&images);
+        self.edges.add(occluder, &cone, images[0] != first);
+        Some((cone, occluder))
+    }
+
+    fn roots(&mut self, tree: &OcclusionTree<Plane3>) -> Vec<(Slot, Cone3)> {
+        roots(&mut self.space, &self.frame, tree)
+    }
+
+    fn edge_plane(&self, occluder: Occluder, edge: usize) -> Plane3 {
+        self.edges.of(occluder, edge)
     }
 
     fn region(&mut self, bounds: &Aabb) -> Region<Cone3> {

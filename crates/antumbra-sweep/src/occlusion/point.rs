@@ -7,12 +7,13 @@
 
 use antumbra_kernel::{Aabb, Plane, Point, Sign, sub};
 use antumbra_lines::{
-    Cone3, Half, LineSpace as _, Mark, Nearness, Occluder, OcclusionTree, Plane3, Space3,
+    Child, Cone3, Corner3, Half, LineSpace as _, Mark, Nearness, Occluder, OcclusionTree, Plane3,
+    Slot, Space3, Wall,
 };
 use antumbra_scene::PolygonRef;
 
 use super::boxes::outline;
-use super::view::{Region, Sides, View, none_beyond};
+use super::view::{Region, Sides, View};
 
 /// All directions from a point of the grid, or those of a convex frustum.
 #[derive(Clone, Debug)]
@@ -20,6 +21,7 @@ pub struct PointView {
     space: Space3,
     eye: Point,
     frame: Vec<[i64; 3]>,
+    edges: EdgePlanes,
 }
 
 /// The side of planes on which a point lies.
@@ -27,9 +29,8 @@ pub struct PointView {
 pub struct EyeSides(Point);
 
 impl Sides for EyeSides {
-    fn behind(&self, bounds: &Aabb, plane: &Plane) -> bool {
-        let side = plane.side(self.0);
-        side != Sign::Zero && none_beyond(bounds, plane, side)
+    fn away(&self, plane: &Plane) -> Sign {
+        plane.side(self.0).flip()
     }
 }
 
@@ -41,6 +42,7 @@ impl PointView {
             space: Space3::new(),
             eye,
             frame: Vec::new(),
+            edges: EdgePlanes::default(),
         }
     }
 
@@ -54,6 +56,7 @@ impl PointView {
             space: Space3::new(),
             eye,
             frame: edges.to_vec(),
+            edges: EdgePlanes::default(),
         })
     }
 
@@ -121,7 +124,17 @@ impl View for PointView {
         if sign < 0 {
             directions.reverse();
         }
-        Some((self.space.cone(&directions), occluder))
+        let cone = self.space.cone(&directions);
+        self.edges.add(occluder, &cone, sign < 0);
+        Some((cone, occluder))
+    }
+
+    fn roots(&mut self, tree: &OcclusionTree<Plane3>) -> Vec<(Slot, Cone3)> {
+        roots(&mut self.space, &self.frame, tree)
+    }
+
+    fn edge_plane(&self, occluder: Occluder, edge: usize) -> Plane3 {
+        self.edges.of(occluder, edge)
     }
 
     fn region(&mut self, bounds: &Aabb) -> Region<Cone3> {
@@ -208,4 +221,111 @@ pub(super) fn orient(directions: &mut Vec<[i64; 3]>) -> bool {
         directions.reverse();
     }
     turn.is_some()
+}
+
+/// Where the cones of a framed tree are: the eight octants, or the one pyramid.
+pub(super) fn roots(
+    space: &mut Space3,
+    edges: &[[i64; 3]],
+    tree: &OcclusionTree<Plane3>,
+) -> Vec<(Slot, Cone3)> {
+    if edges.is_empty() {
+        return (0..8).map(|bits| octant(space, tree, bits)).collect();
+    }
+    let mut cone = space.cone(edges);
+    let mut slot = Slot::Root;
+    for (i, corner) in cone.corners.iter_mut().enumerate() {
+        // The frame was made of these hyperplanes, in this order.
+        if let Child::Node(node) = tree.child(slot) {
+            corner.plane = tree.nodes()[node as usize].plane;
+            slot = Slot::Side(node, Half::Positive);
+        }
+        corner.wall = Wall(FIRST_ROOT_WALL - i as u32);
+    }
+    vec![(slot, cone)]
+}
+
+/// Walls of roots count down from here.
+const FIRST_ROOT_WALL: u32 = u32::MAX - 1;
+
+/// The octant whose axis k is positive where bit k is set. Octants that share a quarter of a
+/// coordinate plane have the same wall there.
+fn octant(space: &mut Space3, tree: &OcclusionTree<Plane3>, bits: u32) -> (Slot, Cone3) {
+    let positive = |k: usize| bits >> k & 1 == 1;
+    let half = |k: usize| {
+        if positive(k) {
+            Half::Positive
+        } else {
+            Half::Negative
+        }
+    };
+    let mut slot = Slot::Root;
+    let mut planes = [None; 3];
+    for (k, plane) in planes.iter_mut().enumerate() {
+        if let Child::Node(node) = tree.child(slot) {
+            *plane = Some(tree.nodes()[node as usize].plane);
+            slot = Slot::Side(node, half(k));
+        }
+    }
+    // The axes turn inward in this order if an even number of them is negative.
+    let order = if bits.count_ones() % 2 == 1 {
+        [0, 1, 2]
+    } else {
+        [0, 2, 1]
+    };
+    let corners = (0..3).filter_map(|i| {
+        let (here, next) = (order[i], order[(i + 1) % 3]);
+        let across = 3 - here - next;
+        let mut axis = [0_i64; 3];
+        axis[here] = if positive(here) { 1 } else { -1 };
+        let quarter = bits & !(1 << across);
+        Some(Corner3 {
+            ray: space.ray(axis),
+            plane: planes[across]?,
+            side: half(across),
+            wall: Wall(FIRST_ROOT_WALL - (across as u32 * 8 + quarter)),
+        })
+    });
+    let corners = corners.collect();
+    (slot, Cone3 { corners })
+}
+
+/// The hyperplanes of the edges of all occluders of a view.
+#[derive(Clone, Debug, Default)]
+pub(super) struct EdgePlanes {
+    planes: Vec<Plane3>,
+    /// Where the planes of an occluder start, and whether its cone runs against its polygon.
+    first: Vec<(u32, bool)>,
+}
+
+impl EdgePlanes {
+    /// Adds those of a new occluder, dropping all of higher numbers.
+    pub(super) fn add(&mut self, occluder: Occluder, cone: &Cone3, reversed: bool) {
+        let index = occluder.0 as usize;
+        if let Some(&(start, _)) = self.first.get(index) {
+            self.planes.truncate(start as usize);
+            self.first.truncate(index);
+        }
+        self.first.push((self.planes.len() as u32, reversed));
+        self.planes.extend(cone.corners.iter().map(|c| c.plane));
+    }
+
+    /// The plane of the edge from a polygon's corner to the next.
+    pub(super) fn of(&self, occluder: Occluder, edge: usize) -> Plane3 {
+        let index = occluder.0 as usize;
+        let (start, reversed) = self.first[index];
+        let end = self
+            .first
+            .get(index + 1)
+            .map_or(self.planes.len(), |&(s, _)| s as usize);
+        let planes = &self.planes[start as usize..end];
+        let n = planes.len();
+        // Reversed, ray i belongs to corner n - 1 - i, so facet i is edge n - 2 - i.
+        let i = if reversed {
+            (2 * n - 2 - edge) % n
+        } else {
+            edge
+        };
+        planes[i]
+    }
 }

@@ -1,7 +1,7 @@
 //! What a sweep needs to know about the lines it follows: how polygons and boxes become pieces.
 
 use antumbra_kernel::{Aabb, Plane, Sign};
-use antumbra_lines::{DepthSpace, LineSpace, Mark, Occluder, OcclusionTree};
+use antumbra_lines::{DepthSpace, LineSpace, Mark, Occluder, OcclusionTree, Slot};
 use antumbra_scene::PolygonRef;
 
 /// The hyperplanes of a view's line space.
@@ -21,8 +21,15 @@ pub enum Region<T> {
 
 /// From which side planes are seen: all that the test of a box against a blocked leaf needs.
 pub trait Sides {
+    /// The sign of the plane's normal along the lines: positive if it points away from the source,
+    /// zero if the plane is seen edge-on. Exact.
+    fn away(&self, plane: &Plane) -> Sign;
+
     /// Whether a closed box lies behind a plane, or on it, as seen from the source. Exact.
-    fn behind(&self, bounds: &Aabb, plane: &Plane) -> bool;
+    fn behind(&self, bounds: &Aabb, plane: &Plane) -> bool {
+        let side = self.away(plane).flip();
+        side != Sign::Zero && none_beyond(bounds, plane, side)
+    }
 }
 
 /// A source of lines, and the line space they fill.
@@ -37,6 +44,14 @@ pub trait View {
 
     /// Frames the tree before the sweep: pieces of the problem's lines.
     fn frame(&mut self, tree: &mut OcclusionTree<PlaneOf<Self>>);
+
+    /// The pieces of the problem's lines, each with the slot of the framed tree that holds it. Their
+    /// facets have walls above all numbers of nodes; two pieces meet at a wall, or one ends there.
+    fn roots(&mut self, tree: &OcclusionTree<PlaneOf<Self>>) -> Vec<(Slot, PieceOf<Self>)>;
+
+    /// The hyperplane of an edge of an occluder that is in the tree: that from its polygon's corner
+    /// of this number to the next.
+    fn edge_plane(&self, occluder: Occluder, edge: usize) -> PlaneOf<Self>;
 
     /// The lines that an occluder blocks; `None` if they are no open set.
     fn occluder(&mut self, polygon: &PolygonRef<'_>) -> Option<(PieceOf<Self>, Occluder)>;
@@ -62,7 +77,7 @@ pub trait View {
 
 /// Whether no corner of a box lies strictly on one side of a plane. Exact: it looks at the corner
 /// that lies farthest to that side; 77 bits.
-pub(super) fn none_beyond(bounds: &Aabb, plane: &Plane, side: Sign) -> bool {
+fn none_beyond(bounds: &Aabb, plane: &Plane, side: Sign) -> bool {
     let toward = i64::from(side.to_i8());
     let (low, high) = (bounds.min.to_array(), bounds.max.to_array());
     let corner: [i32; 3] = std::array::from_fn(|k| {
