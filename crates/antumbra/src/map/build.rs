@@ -24,9 +24,10 @@ pub(super) fn build<V: View<Space = Space3>>(
     seen: Seen,
     options: &MapOptions,
 ) -> VisibilityMap {
-    let cells = Cells::of(&mut sweep);
-    let space = std::mem::take(sweep.view.space());
-    let walls = Walls::of(&cells, &space);
+    let mut cells = Cells::of(&mut sweep);
+    let mut space = std::mem::take(sweep.view.space());
+    let mut walls = Walls::of(&cells, &space);
+    walls.split_crossings(&mut cells, &mut space);
     let mesh = Mesh::of(&cells, &walls);
     let classifier = Classifier {
         scene,

@@ -14,6 +14,8 @@ pub(super) struct Cells {
     pub(super) leaves: Vec<Leaf>,
     /// The cell of each corner.
     pub(super) owner: Vec<u32>,
+    /// Vertices that are no corners.
+    added: Vec<Ray3>,
 }
 
 impl Cells {
@@ -24,6 +26,7 @@ impl Cells {
             first: vec![0],
             leaves: Vec::new(),
             owner: Vec::new(),
+            added: Vec::new(),
         };
         for (slot, piece) in sweep.view.roots(&sweep.tree) {
             let space = sweep.view.space();
@@ -58,7 +61,17 @@ impl Cells {
     }
 
     pub(super) fn ray(&self, corner: u32) -> &Ray3 {
-        &self.corners[corner as usize].ray
+        let given = self.corners.len();
+        match self.corners.get(corner as usize) {
+            Some(corner) => &corner.ray,
+            None => &self.added[corner as usize - given],
+        }
+    }
+
+    /// Adds a ray that is no corner of a cell; returns its number, after those of all corners.
+    pub(super) fn add_ray(&mut self, ray: Ray3) -> u32 {
+        self.added.push(ray);
+        (self.corners.len() + self.added.len() - 1) as u32
     }
 
     /// All corners by the wall of their facets, those on its negative side first.

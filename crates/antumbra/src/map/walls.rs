@@ -6,7 +6,7 @@
 
 use std::cmp::Ordering;
 
-use antumbra_lines::{Half, LineSpace as _, Ray3, Space3, Wall};
+use antumbra_lines::{Half, Leaf, LineSpace as _, Ray3, Space3, Wall};
 
 use super::cells::Cells;
 
@@ -21,6 +21,8 @@ pub(super) struct Segment {
     /// The cell whose border runs from `from` to `to`, and the one on the other side.
     pub(super) cells: [u32; 2],
     pub(super) wall: Wall,
+    /// A corner whose facet lies on the wall, positive side first, for its hyperplane.
+    facet: u32,
 }
 
 /// The elementary edges of all walls, and the vertices.
@@ -57,6 +59,70 @@ impl Walls {
         }
         matcher.finish()
     }
+}
+
+impl Walls {
+    /// Cuts every segment along which the two polygons beside it change places in depth. That takes
+    /// two edges in one hyperplane that cross there, one polygon on each side: rare, but no vertex
+    /// says so.
+    pub(super) fn split_crossings(&mut self, cells: &mut Cells, space: &mut Space3) {
+        let crossings: Vec<(usize, Ray3)> = (0..self.segments.len())
+            .filter_map(|i| Some((i, crossing(&self.segments[i], cells, space)?)))
+            .collect();
+        if crossings.is_empty() {
+            return;
+        }
+        let mut segments = Vec::with_capacity(self.segments.len() + crossings.len());
+        let mut first = Vec::with_capacity(self.segments.len() + 1);
+        let mut next = crossings.into_iter().peekable();
+        for (i, segment) in self.segments.iter().enumerate() {
+            first.push(segments.len() as u32);
+            segments.push(*segment);
+            if let Some((_, ray)) = next.next_if(|(at, _)| *at == i) {
+                let middle = cells.add_ray(ray);
+                self.vertex.push(self.rays.len() as u32);
+                self.rays.push(middle);
+                segments[first[i] as usize].to = middle;
+                segments.push(Segment {
+                    from: middle,
+                    ..*segment
+                });
+            }
+        }
+        first.push(segments.len() as u32);
+        for (start, count) in &mut self.along {
+            let end = first[(*start + *count) as usize];
+            *start = first[*start as usize];
+            *count = end - *start;
+        }
+        self.segments = segments;
+    }
+}
+
+/// Where the polygons of a segment's two cells change places strictly between its ends.
+fn crossing(segment: &Segment, cells: &Cells, space: &mut Space3) -> Option<Ray3> {
+    if segment.cells[1] == OUTSIDE {
+        return None;
+    }
+    let [a, b] = segment.cells.map(|c| cells.leaves[c as usize]);
+    let (Leaf::Blocked(a), Leaf::Blocked(b)) = (a, b) else {
+        return None;
+    };
+    if a == b {
+        return None;
+    }
+    let [from, to] = [segment.from, segment.to].map(|c| space.nearer(a, b, cells.ray(c)));
+    if !from.times(to).is_negative() {
+        return None;
+    }
+    let common = space.common_plane(a, b);
+    let wall = cells.corners[segment.facet as usize].plane;
+    // The segment runs with the positive side of its wall: n x h leads from + to -.
+    Some(if from.is_positive() {
+        space.meet(wall, common)
+    } else {
+        space.meet(common, wall)
+    })
 }
 
 struct Matcher<'a> {
@@ -177,6 +243,7 @@ impl Matcher<'_> {
             to,
             cells: facets.map(|f| self.cells.owner[f as usize]),
             wall,
+            facet: facets[0],
         });
     }
 
@@ -188,6 +255,7 @@ impl Matcher<'_> {
             to: self.cells.next(facet),
             cells: [self.cells.owner[facet as usize], OUTSIDE],
             wall,
+            facet,
         });
     }
 

@@ -1,0 +1,1 @@
+//! Measured buildings and levels, where they are at hand.
