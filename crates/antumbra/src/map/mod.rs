@@ -31,6 +31,8 @@ mod build;
 mod cells;
 mod check;
 mod classify;
+pub mod drawing;
+mod hidden;
 mod mesh;
 mod view;
 mod walls;
@@ -288,6 +290,15 @@ impl VisibilityMap {
     #[must_use]
     pub fn eye(&self, scene: &Scene) -> Option<[f64; 3]> {
         self.view.eye().map(|e| scene.grid().to_scene(e))
+    }
+
+    /// Where the lines of a parallel view go: the direction of integers that was used.
+    #[must_use]
+    pub fn direction(&self) -> Option<[i32; 3]> {
+        match self.view {
+            view::Seen::Parallel(direction) => Some(direction),
+            view::Seen::Point(_) => None,
+        }
     }
 
     /// The solid angle (or area) of each object that is seen, by object. Sums of faces.
