@@ -149,8 +149,9 @@ pub(crate) fn directions(map: &VisibilityMap) -> Vec<Direction> {
 }
 
 /// Checks directions inside every cell, right beside each of its edges and vertices (2^-40 of the
-/// way, of vertices scaled to like length), against first hits. Returns how many were checked.
-pub(crate) fn check_beside(map: &VisibilityMap, hits: &FirstHits) -> usize {
+/// way, of vertices scaled to like length), against first hits. Of more than `most` directions, about
+/// that many spread over the cells. Returns how many were checked.
+pub(crate) fn check_beside(map: &VisibilityMap, hits: &FirstHits, most: usize) -> usize {
     use dashu_int::ops::BitTest;
     let longest = |d: &Direction| d.iter().map(BitTest::bit_len).max().unwrap_or(0);
     let rays = directions(map);
@@ -166,7 +167,9 @@ pub(crate) fn check_beside(map: &VisibilityMap, hits: &FirstHits) -> usize {
         std::array::from_fn(|k| parts.iter().map(|d| d[k].clone()).sum())
     };
     let mut checked = 0;
-    for cell in cells(map) {
+    let cells = cells(map);
+    let expected: usize = cells.iter().map(|c| 2 * c.vertices.len() + 1).sum();
+    for cell in cells.iter().step_by(1 + expected / most) {
         let corners: Vec<&Direction> = cell.vertices.iter().map(|&v| &rays[v as usize]).collect();
         let center = sum(&corners);
         let n = corners.len();

@@ -143,7 +143,7 @@ fn first_hits_agree_beside_every_edge_and_vertex() {
         map.sanity_check()
             .unwrap_or_else(|e| panic!("seed {seed}: {e}"));
         let hits = FirstHits::new(&scene, scene.grid().snap(eye).expect("on the grid"));
-        checked += check_beside(&map, &hits);
+        checked += check_beside(&map, &hits, usize::MAX);
     }
     assert!(checked > 10_000, "{checked}");
 }
