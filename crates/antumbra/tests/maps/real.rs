@@ -6,6 +6,7 @@ use antumbra::scene::{PolygonId, Scene, SceneBuilder};
 use antumbra_testkit::environment::{data, long, skip};
 use antumbra_testkit::random::Random;
 use antumbra_testkit::ray_caster::{RayCaster, Triangle};
+use dashu_int::IBig;
 
 use crate::oracle::{Cell, FirstHits, cells, check_beside, dot, unit};
 
@@ -107,8 +108,9 @@ fn check_views(name: &str, scene: &Scene, eyes: &[[f64; 3]]) {
         map.sanity_check()
             .unwrap_or_else(|e| panic!("{name} {i}: {e}"));
         let grid = scene.grid().snap(eye).expect("on the grid");
-        let beside = check_beside(&map, &FirstHits::new(scene, grid), exact());
-        let rays = check_rays(&format!("{name} {i}"), &map, &caster, grid.to_f64());
+        let hits = FirstHits::new(scene, grid);
+        let beside = check_beside(&map, &hits, exact());
+        let rays = check_rays(&format!("{name} {i}"), &map, &caster, &hits, grid.to_f64());
         note(&format!(
             "{name} {i}: {beside} exact directions, {rays} rays"
         ));
@@ -227,6 +229,7 @@ fn check_rays(
     name: &str,
     map: &antumbra::map::VisibilityMap,
     caster: &RayCaster,
+    hits_of: &FirstHits,
     eye: [f64; 3],
 ) -> usize {
     let directions: Vec<[f64; 3]> = map.vertices().iter().map(|v| v.ray).collect();
@@ -236,7 +239,7 @@ fn check_rays(
         .collect();
     let bins = Bins::new(&shapes);
     let mut random = Random::new(7);
-    let mut checked = 0;
+    let (mut checked, mut slipped) = (0, 0);
     for _ in 0..rays() {
         let z = 2.0 * random.unit() - 1.0;
         let turn = random.unit() * std::f64::consts::TAU;
@@ -253,18 +256,24 @@ fn check_rays(
         let limit = hits.first().map_or(0.0, |h| h.t * (1.0 + 1e-9));
         let first = hits.iter().take_while(|h| h.t <= limit);
         let owners: Vec<u32> = first.map(|h| h.owner).collect();
-        match shapes[cell as usize].owner {
-            Some(id) => assert!(
-                owners.contains(&id.0),
-                "{name}: {d:?}: {owners:?}, not {id:?}"
-            ),
-            None => assert!(
-                owners.is_empty(),
-                "{name}: {d:?}: {owners:?}, not the background"
-            ),
+        let owner = shapes[cell as usize].owner;
+        let agrees = match owner {
+            Some(id) => owners.contains(&id.0),
+            None => owners.is_empty(),
+        };
+        if !agrees {
+            // Floats may slip between triangles, or lose a hit: big integers have the last word.
+            let exact = d.map(|c| IBig::from((c * (1_u64 << 60) as f64) as i64));
+            let first = hits_of.along(&exact).first().copied();
+            assert_eq!(first, owner, "{name}: {d:?}: rays say {owners:?}");
+            slipped += 1;
         }
         checked += 1;
     }
+    assert!(
+        slipped * 10_000 <= checked,
+        "{name}: rays were wrong {slipped} times"
+    );
     assert!(
         checked > rays() / 2,
         "{name}: only {checked} rays are off the edges"

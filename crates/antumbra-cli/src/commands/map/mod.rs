@@ -6,7 +6,7 @@ mod paper;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use antumbra::map::{Dissolve, EdgeClass, MapOptions, Mapper, Viewpoint, VisibilityMap};
+use antumbra::map::{Dissolve, EdgeClass, MapError, MapOptions, Mapper, Viewpoint, VisibilityMap};
 use antumbra_scene::{BoxContact, Scene, box_contact};
 use clap::{Args, ValueEnum};
 use serde_json::{Map, Value, json};
@@ -135,9 +135,10 @@ pub(crate) fn run(args: &MapArgs, global: &Global) -> Result<(), Failure> {
     let mapper = Mapper::new(scene);
     let prepared = start.elapsed();
     let start = Instant::now();
-    let map = mapper
-        .map(&view, &options)
-        .map_err(|e| Failure::Usage(e.to_string()))?;
+    let map = mapper.map(&view, &options).map_err(|e| match e {
+        MapError::Snap(_) => Failure::Content(e.to_string()),
+        _ => Failure::Usage(e.to_string()),
+    })?;
     let took = seconds(start.elapsed());
     let start = Instant::now();
     write(args, scene, &map)?;
