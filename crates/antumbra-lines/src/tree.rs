@@ -347,6 +347,24 @@ impl<P: Copy + Eq> OcclusionTree<P> {
         }
     }
 
+    /// A leaf whose closed cell holds a ray: one way down, on a hyperplane to its positive side.
+    pub fn leaf_at<S>(&self, space: &S, ray: &S::Ray) -> Leaf
+    where
+        S: LineSpace<Plane = P>,
+    {
+        let mut child = self.root;
+        loop {
+            match child {
+                Child::Leaf(leaf) => return leaf,
+                Child::Node(node) => {
+                    let TreeNode { plane, children } = self.nodes[node as usize];
+                    let positive = !space.sign(plane, ray).is_negative();
+                    child = children[usize::from(positive)];
+                }
+            }
+        }
+    }
+
     /// Visits the leaves whose closed cells a ray lies in: one, or the neighbors around a border.
     pub fn visit_at<S>(&self, space: &S, ray: &S::Ray, mut visitor: impl FnMut(Leaf))
     where

@@ -12,7 +12,8 @@ mod view;
 
 use std::collections::BinaryHeap;
 
-use antumbra_lines::{OcclusionTree, Visibility};
+use antumbra_kernel::Aabb;
+use antumbra_lines::{Leaf, LineSpace, Occluder, OcclusionTree, Visibility};
 use antumbra_scene::{KdBox, KdNode, PolygonId, Scene, SeenPolygons};
 
 pub use parallel::ParallelView;
@@ -218,21 +219,29 @@ impl<V: View> Sweeper<'_, V> {
         opens
     }
 
-    fn test(
-        &mut self,
-        bounds: &antumbra_kernel::Aabb,
-        piece: <V::Space as antumbra_lines::LineSpace>::Piece,
-    ) -> Visibility {
+    fn test(&mut self, bounds: &Aabb, piece: <V::Space as LineSpace>::Piece) -> Visibility {
         let (polygons, scene) = (&self.polygons, self.scene);
         let sides = self.view.sides();
-        let hidden = |old: antumbra_lines::Occluder| {
+        let hidden = |old: Occluder| {
             let polygon = scene.polygon(polygons[old.0 as usize]);
             sides.behind(bounds, polygon.plane)
         };
+        // Most boxes are seen, and most of those in their middle: one way down the tree.
+        let middle = bounds.center_doubled().map(|c| c.div_euclid(2) as i32);
+        let ray = self.view.line_through(middle.into());
         let space = self.view.space();
+        let seen = match self.tree.leaf_at(space, &ray) {
+            Leaf::Open => true,
+            Leaf::Outside => false,
+            Leaf::Blocked(old) => !hidden(old),
+        };
+        if seen {
+            LineSpace::discard(space, piece);
+            return Visibility::Partial;
+        }
         if self.options.test == BoxTest::Conservative {
             let state = self.tree.test_without_splitting(space, &piece, hidden);
-            antumbra_lines::LineSpace::discard(space, piece);
+            LineSpace::discard(space, piece);
             return state;
         }
         self.tree.test_region(space, piece, |_, _, old| {

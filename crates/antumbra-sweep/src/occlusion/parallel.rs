@@ -6,7 +6,7 @@
 //! nearness has a row of 86 bits and a scale of 63; the row of two planes' common line has 149 bits.
 
 use antumbra_kernel::{Aabb, Plane, Point, Sign};
-use antumbra_lines::{Cone3, Mark, Nearness, Occluder, OcclusionTree, Plane3, Slot, Space3};
+use antumbra_lines::{Cone3, Mark, Nearness, Occluder, OcclusionTree, Plane3, Ray3, Slot, Space3};
 use antumbra_scene::PolygonRef;
 
 use super::boxes::outline;
@@ -163,6 +163,11 @@ impl View for ParallelView {
             true => Region::Piece(self.space.cone(&images)),
             false => Region::Nowhere,
         }
+    }
+
+    fn line_through(&mut self, point: Point) -> Ray3 {
+        let image = self.image(point);
+        self.space.ray(image)
     }
 
     fn mark(&mut self) -> Mark {

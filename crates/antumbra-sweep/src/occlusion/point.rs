@@ -8,7 +8,7 @@
 use antumbra_kernel::{Aabb, Plane, Point, Sign, sub};
 use antumbra_lines::{
     Child, Cone3, Corner3, Half, LineSpace as _, Mark, Nearness, Occluder, OcclusionTree, Plane3,
-    Slot, Space3, Wall,
+    Ray3, Slot, Space3, Wall,
 };
 use antumbra_scene::PolygonRef;
 
@@ -159,6 +159,10 @@ impl View for PointView {
             // A flat box seen edge-on, and all polygons in it.
             false => Region::Nowhere,
         }
+    }
+
+    fn line_through(&mut self, point: Point) -> Ray3 {
+        self.space.ray(sub(point, self.eye))
     }
 
     fn mark(&mut self) -> Mark {

@@ -1,6 +1,6 @@
 //! What a sweep needs to know about the lines it follows: how polygons and boxes become pieces.
 
-use antumbra_kernel::{Aabb, Plane, Sign};
+use antumbra_kernel::{Aabb, Plane, Point, Sign};
 use antumbra_lines::{DepthSpace, LineSpace, Mark, Occluder, OcclusionTree, Slot};
 use antumbra_scene::PolygonRef;
 
@@ -58,6 +58,9 @@ pub trait View {
 
     /// The lines that meet a box.
     fn region(&mut self, bounds: &Aabb) -> Region<PieceOf<Self>>;
+
+    /// The line through a point that is not the source.
+    fn line_through(&mut self, point: Point) -> <Self::Space as LineSpace>::Ray;
 
     /// How far the space is filled, to [`View::rewind`] to.
     fn mark(&mut self) -> Mark;

@@ -8,7 +8,9 @@ use antumbra_testkit::random::Random;
 use antumbra_testkit::ray_caster::{RayCaster, Triangle};
 use dashu_int::IBig;
 
-use crate::oracle::{Cell, FirstHits, cells, check_beside, dot, unit};
+use crate::oracle::{
+    Cell, Direction, FirstHits, cells, check_beside, directions as directions_of, dot, unit,
+};
 
 /// Directions nearer to an edge than this, in radians, are left to the exact test.
 const NEAR: f64 = 1e-5;
@@ -233,10 +235,9 @@ fn check_rays(
     eye: [f64; 3],
 ) -> usize {
     let directions: Vec<[f64; 3]> = map.vertices().iter().map(|v| v.ray).collect();
-    let shapes: Vec<Shape> = cells(map)
-        .iter()
-        .map(|c| Shape::new(c, &directions))
-        .collect();
+    let cells = cells(map);
+    let exact_rays = directions_of(map);
+    let shapes: Vec<Shape> = cells.iter().map(|c| Shape::new(c, &directions)).collect();
     let bins = Bins::new(&shapes);
     let mut random = Random::new(7);
     let (mut checked, mut slipped) = (0, 0);
@@ -264,6 +265,10 @@ fn check_rays(
         if !agrees {
             // Floats may slip between triangles, or lose a hit: big integers have the last word.
             let exact = d.map(|c| IBig::from((c * (1_u64 << 60) as f64) as i64));
+            if !holds(&cells[cell as usize], &exact_rays, &exact) {
+                // The float border of a cell with a very short edge points anywhere.
+                continue;
+            }
             let first = hits_of.along(&exact).first().copied();
             assert_eq!(first, owner, "{name}: {d:?}: rays say {owners:?}");
             slipped += 1;
@@ -279,4 +284,16 @@ fn check_rays(
         "{name}: only {checked} rays are off the edges"
     );
     checked
+}
+
+/// Whether a convex cell holds a direction strictly: by big integers.
+fn holds(cell: &Cell, rays: &[Direction], d: &Direction) -> bool {
+    let n = cell.vertices.len();
+    let side = |i: usize| -> IBig {
+        let u = &rays[cell.vertices[i] as usize];
+        let v = &rays[cell.vertices[(i + 1) % n] as usize];
+        let m = |a: usize, b: usize| &u[a] * &v[b] - &u[b] * &v[a];
+        m(1, 2) * &d[0] + m(2, 0) * &d[1] + m(0, 1) * &d[2]
+    };
+    (0..n).all(|i| side(i) > IBig::ZERO) || (0..n).all(|i| side(i) < IBig::ZERO)
 }
