@@ -32,6 +32,7 @@ read or written; 5 stopped, with what was finished saved.";
 pub(crate) struct Global {
     /// Threads to use (default: all cores); results never depend on it
     #[arg(long, global = true, value_name = "N", help_heading = "Global options")]
+    #[arg(value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Print no progress and no notes
     #[arg(long, short, global = true, help_heading = "Global options")]

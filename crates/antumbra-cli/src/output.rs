@@ -78,11 +78,26 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     })
 }
 
-/// Refuses a path that will not be writable, before any work is done.
-pub(crate) fn check_writable(path: &Path) -> Result<(), Failure> {
+/// Refuses a path that will not be writable or is one of the inputs, before any work is done.
+pub(crate) fn check_writable(path: &Path, inputs: &[&Path]) -> Result<(), Failure> {
     if path.is_dir() {
         let cause = std::io::Error::from(std::io::ErrorKind::IsADirectory);
         return Err(Failure::unwritable(path, &cause));
+    }
+    // Results are moved to their name, which would replace a device or a pipe.
+    if path.exists() && !path.is_file() {
+        let cause = std::io::Error::other("not a regular file");
+        return Err(Failure::unwritable(path, &cause));
+    }
+    let place = |path: &Path| path.canonicalize().ok();
+    if inputs
+        .iter()
+        .any(|input| place(path).is_some() && place(input) == place(path))
+    {
+        return Err(Failure::Usage(format!(
+            "{}: the result would replace its own input; give another name with -o",
+            path.display()
+        )));
     }
     let folder = path
         .parent()

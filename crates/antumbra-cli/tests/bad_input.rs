@@ -74,7 +74,10 @@ fn cells_and_names_that_make_no_sense() {
         r#"[{"name":"far","min":[1e9,0,0],"max":[2e9,1,1]}]"#,
     );
     for (line, code, part) in [
-        ("bake a.obj --cells object:lamp", 3, "lamp"),
+        ("bake a.obj --cells object:lamp", 3, "a.obj: there is no"),
+        ("bake a.obj -o a.obj", 2, "replace its own input"),
+        ("bake a.obj -o ./a.obj", 2, "replace its own input"),
+        ("bake a.obj --grid 1000", 3, "on a grid of step 1000"),
         ("bake a.obj --cells boxes:gone.json", 4, "gone.json"),
         ("bake a.obj --cells boxes:flat.json", 3, "no extent along z"),
         (

@@ -75,6 +75,7 @@ fn wrong_usage_is_one_sentence() {
         ("bake a.glb --grid 0", "expected a positive number"),
         ("bake a.glb --grid nan", "expected a positive number"),
         ("bake a.glb --threads many", "invalid value 'many'"),
+        ("bake a.glb --threads 0", "0 is not in 1..=1024"),
         ("bake a.glb --ignore-below 5", "an angle with its unit"),
         (
             "bake a.glb --occluders a --transparent b",

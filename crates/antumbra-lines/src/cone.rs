@@ -47,6 +47,34 @@ pub struct Cone {
     rays: Vec<Ray>,
 }
 
+/// The signs of a cone's rays with respect to a half-space.
+#[derive(Clone, Debug)]
+pub struct RaySigns {
+    signs: Vec<Sign>,
+    inside: usize,
+    outside: usize,
+}
+
+impl RaySigns {
+    fn push(&mut self, sign: Sign) {
+        self.inside += usize::from(sign.is_positive());
+        self.outside += usize::from(sign.is_negative());
+        self.signs.push(sign);
+    }
+
+    /// How many rays lie strictly inside.
+    #[must_use]
+    pub fn inside(&self) -> usize {
+        self.inside
+    }
+
+    /// How many rays lie strictly outside.
+    #[must_use]
+    pub fn outside(&self) -> usize {
+        self.outside
+    }
+}
+
 /// What a hyperplane does to a cone.
 #[derive(Clone, Debug)]
 pub enum Split {
@@ -183,27 +211,49 @@ impl Cone {
         out
     }
 
-    /// The signs of all rays with respect to a half-space, and whether any is strictly inside or
-    /// strictly outside.
-    fn classify(
+    /// The signs of all rays with respect to a half-space.
+    #[must_use]
+    pub fn signs(&self, space: &mut PluckerSpace, h: Halfspace) -> RaySigns {
+        let slot = self.slot_of(h.row);
+        let mut out = RaySigns {
+            signs: Vec::with_capacity(self.rays.len()),
+            inside: 0,
+            outside: 0,
+        };
+        for ray in &self.rays {
+            out.push(match slot {
+                Some(k) if ray.tight >> k & 1 == 1 => Sign::Zero,
+                _ => h.orient(space.sign(h.row, ray.vertex)),
+            });
+        }
+        out
+    }
+
+    /// The signs with respect to a half-space of the part of a cone inside another one: those of
+    /// the rays that were kept are known, `whole` being the signs on the cone and `cut` those by
+    /// which the part was split off.
+    #[must_use]
+    pub fn inherited_signs(
         &self,
         space: &mut PluckerSpace,
         h: Halfspace,
-        signs: &mut Vec<Sign>,
-    ) -> (bool, bool) {
-        signs.clear();
-        let (mut inside, mut outside) = (false, false);
-        let slot = self.slot_of(h.row);
-        for ray in &self.rays {
-            let s = match slot {
-                Some(k) if ray.tight >> k & 1 == 1 => Sign::Zero,
-                _ => h.orient(space.sign(h.row, ray.vertex)),
-            };
-            inside |= s.is_positive();
-            outside |= s.is_negative();
-            signs.push(s);
+        whole: &RaySigns,
+        cut: &RaySigns,
+    ) -> RaySigns {
+        let mut out = RaySigns {
+            signs: Vec::with_capacity(self.rays.len()),
+            inside: 0,
+            outside: 0,
+        };
+        for (&s, c) in whole.signs.iter().zip(&cut.signs) {
+            if !c.is_negative() {
+                out.push(s);
+            }
         }
-        (inside, outside)
+        for ray in &self.rays[out.signs.len()..] {
+            out.push(h.orient(space.sign(h.row, ray.vertex)));
+        }
+        out
     }
 
     fn slot_of(&self, row: RowId) -> Option<usize> {
@@ -231,33 +281,33 @@ impl Cone {
         })
     }
 
-    /// How many rays lie strictly outside a half-space, stopping early where none lies inside.
-    #[must_use]
-    pub fn count_outside(&self, space: &mut PluckerSpace, h: Halfspace) -> (usize, usize) {
-        let mut counts = (0, 0);
-        for ray in &self.rays {
-            match h.orient(space.sign(h.row, ray.vertex)) {
-                Sign::Positive => counts.0 += 1,
-                Sign::Negative => counts.1 += 1,
-                Sign::Zero => {}
-            }
-        }
-        counts
-    }
-
     /// Splits the cone by a hyperplane.
     ///
     /// # Errors
     /// If a part would have more than 128 facets.
     pub fn split(&self, space: &mut PluckerSpace, h: Halfspace) -> Result<Split, ConeError> {
-        let mut signs = Vec::with_capacity(self.rays.len());
-        match self.classify(space, h, &mut signs) {
+        let signs = self.signs(space, h);
+        self.split_by(space, h, &signs)
+    }
+
+    /// Splits the cone by a hyperplane whose signs on it are known. The rays of the inner part are
+    /// those kept, in order, and then new ones.
+    ///
+    /// # Errors
+    /// If a part would have more than 128 facets.
+    pub fn split_by(
+        &self,
+        space: &mut PluckerSpace,
+        h: Halfspace,
+        signs: &RaySigns,
+    ) -> Result<Split, ConeError> {
+        match (signs.inside > 0, signs.outside > 0) {
             (_, false) => Ok(Split::Inside),
             (false, true) => Ok(Split::Outside),
             (true, true) => {
-                let fresh = self.crossings(space, h, &signs);
-                let inside = self.part(h, &signs, Sign::Positive, &fresh)?;
-                let outside = self.part(h.opposite(), &signs, Sign::Negative, &fresh)?;
+                let fresh = self.crossings(space, h, &signs.signs);
+                let inside = self.part(h, &signs.signs, Sign::Positive, &fresh)?;
+                let outside = self.part(h.opposite(), &signs.signs, Sign::Negative, &fresh)?;
                 Ok(Split::Both(inside, outside))
             }
         }
@@ -268,49 +318,41 @@ impl Cone {
     /// # Errors
     /// [`ConeError::Flat`] if nothing is left.
     pub fn cut(&mut self, space: &mut PluckerSpace, h: Halfspace) -> Result<(), ConeError> {
-        let mut signs = Vec::with_capacity(self.rays.len());
-        match self.classify(space, h, &mut signs) {
+        let signs = self.signs(space, h);
+        match (signs.inside > 0, signs.outside > 0) {
             (false, _) => Err(ConeError::Flat),
             (true, false) => {
                 // Redundant or touching: keep it where it is a facet, since faces may need it.
-                if signs.iter().filter(|s| s.is_zero()).count() >= 5 {
-                    *self = self.part(h, &signs, Sign::Positive, &[])?;
+                if signs.signs.len() - signs.inside >= 5 {
+                    *self = self.part(h, &signs.signs, Sign::Positive, &[])?;
                 }
                 Ok(())
             }
             (true, true) => {
-                let fresh = self.crossings(space, h, &signs);
-                *self = self.part(h, &signs, Sign::Positive, &fresh)?;
+                let fresh = self.crossings(space, h, &signs.signs);
+                *self = self.part(h, &signs.signs, Sign::Positive, &fresh)?;
                 Ok(())
             }
         }
     }
 
     /// The new rays: one on each 2-face between a ray inside and one outside.
+    ///
+    /// Two rays are adjacent if no third one lies on all the hyperplanes that both lie on: the
+    /// sets of rays on each of these hyperplanes have just the two in common.
     fn crossings(&self, space: &mut PluckerSpace, h: Halfspace, signs: &[Sign]) -> Vec<Ray> {
+        let on = Incidence::new(&self.rays, self.slots.len());
         let mut fresh = Vec::new();
-        for (i, p) in self
-            .rays
-            .iter()
-            .enumerate()
-            .filter(|(i, _)| signs[*i].is_positive())
-        {
-            for (j, n) in self
-                .rays
-                .iter()
-                .enumerate()
-                .filter(|(j, _)| signs[*j].is_negative())
-            {
-                let common = p.tight & n.tight;
-                if common.count_ones() < 4 {
+        for (i, p) in self.rays.iter().enumerate() {
+            if !signs[i].is_positive() {
+                continue;
+            }
+            for (j, n) in self.rays.iter().enumerate() {
+                if !signs[j].is_negative() {
                     continue;
                 }
-                let adjacent = self
-                    .rays
-                    .iter()
-                    .enumerate()
-                    .all(|(k, r)| r.tight & common != common || k == i || k == j);
-                if adjacent {
+                let common = p.tight & n.tight;
+                if at_least_four(common) && on.only_two_share(common) {
                     fresh.push(self.crossing(space, h, p, n, common));
                 }
             }
@@ -446,6 +488,47 @@ impl Cone {
         }
         Ok(())
     }
+}
+
+/// The rays on each hyperplane, as sets of bits.
+struct Incidence {
+    words: usize,
+    sets: Vec<u64>,
+}
+
+impl Incidence {
+    fn new(rays: &[Ray], slots: usize) -> Self {
+        let words = rays.len().div_ceil(64);
+        let mut sets = vec![0_u64; slots * words];
+        for (i, ray) in rays.iter().enumerate() {
+            for k in bits(ray.tight) {
+                sets[k * words + i / 64] |= 1 << (i % 64);
+            }
+        }
+        Self { words, sets }
+    }
+
+    /// Whether exactly two rays lie on all of some hyperplanes, of which two are known to.
+    fn only_two_share(&self, hyperplanes: u128) -> bool {
+        let mut count = 0;
+        for word in 0..self.words {
+            let mut set = u64::MAX;
+            for k in bits(hyperplanes) {
+                set &= self.sets[k * self.words + word];
+            }
+            while set != 0 && count < 3 {
+                set &= set - 1;
+                count += 1;
+            }
+        }
+        count == 2
+    }
+}
+
+/// Whether a set has four members; spares a count of bits where processors lack the instruction.
+fn at_least_four(set: u128) -> bool {
+    let drop = |s: u128| s & s.wrapping_sub(1);
+    drop(drop(drop(set))) != 0
 }
 
 fn bits(mut set: u128) -> impl Iterator<Item = usize> {

@@ -14,7 +14,7 @@ mod start;
 mod thin;
 mod tree;
 
-pub use cone::{Cone, ConeError, Halfspace, Split};
+pub use cone::{Cone, ConeError, Halfspace, RaySigns, Split};
 pub use cone3::{Cone3, Corner3, ExactRay, Mark, Nearness, Plane3, Ray3, Space3, primitive};
 pub use line_space::{Cut, DepthSpace, Facet, Half, LineSpace, Occluder, Order, Position, Wall};
 pub use quadric::{RealLines, real_lines};

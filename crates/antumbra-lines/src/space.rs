@@ -68,8 +68,15 @@ struct VertexData {
     /// Bounds of the absolute errors of `rounded`, direction and moment apart; zero where it was
     /// rounded from the exact coordinates (then each is within a relative 2^-52).
     error: [f64; 2],
+    /// The largest magnitudes of direction and moment in `rounded`.
+    size: [f64; 2],
     exact: OnceCell<ExactVertex>,
     origin: Option<Origin>,
+}
+
+/// The largest magnitudes of direction and moment.
+fn largest(v: &[f64; 6]) -> [f64; 2] {
+    [0, 3].map(|k| v[k].abs().max(v[k + 1].abs()).max(v[k + 2].abs()))
 }
 
 /// Rows and vertices of one query. Rows that describe the same hyperplane are stored once.
@@ -269,6 +276,7 @@ impl PluckerSpace {
         let rounded = round_vertex(self.exact_vertex(vertex));
         let data = &mut self.vertices[vertex.0 as usize];
         data.rounded = rounded;
+        data.size = largest(&rounded);
         data.error = [0.0; 2];
         true
     }
@@ -304,7 +312,7 @@ impl PluckerSpace {
     /// not far below the size, the exact coordinates are computed at once.
     pub(crate) fn cut_edge(&mut self, rows: [RowId; 5], p: VertexId, n: VertexId) -> VertexId {
         const TINY: f64 = 1.0 / (1_u64 << 50) as f64;
-        const TRUSTED: f64 = 1.0 / (1_u64 << 28) as f64;
+        const TRUSTED: f64 = 1.0 / (1_u64 << 20) as f64;
         let origin = Origin { rows, ends: [p, n] };
         let ((sp, ep), (sn, en)) = (self.dot(rows[4], p), self.dot(rows[4], n));
         let (sp, sn) = (sp.abs(), sn.abs());
@@ -315,13 +323,9 @@ impl PluckerSpace {
             std::array::from_fn(|k| l * a.rounded[k] + (1.0 - l) * b.rounded[k]);
         let mut error = [0.0; 2];
         let mut trusted = sp > 4.0 * ep && sn > 4.0 * en;
+        let sizes = largest(&rounded);
         for part in 0..2 {
-            let largest = |v: &[f64; 6]| {
-                (3 * part..3 * part + 3)
-                    .map(|k| v[k].abs())
-                    .fold(0.0, f64::max)
-            };
-            let (la, lb, lw) = (largest(&a.rounded), largest(&b.rounded), largest(&rounded));
+            let (la, lb, lw) = (a.size[part], b.size[part], sizes[part]);
             let own = |e: f64, size: f64| e + size * TINY;
             error[part] = (l * own(a.error[part], la)
                 + (1.0 - l) * own(b.error[part], lb)
@@ -334,6 +338,7 @@ impl PluckerSpace {
             let data = VertexData {
                 rounded,
                 error,
+                size: sizes,
                 exact: OnceCell::new(),
                 origin: Some(origin),
             };
@@ -438,6 +443,10 @@ impl PluckerSpace {
     /// Filter as in [`PluckerSpace::sign`].
     #[must_use]
     pub fn bilinear_sign(&mut self, v: VertexId, w: VertexId) -> Sign {
+        let (sum, bound) = self.bilinear_coarse(v, w);
+        if sum.abs() > bound {
+            return Sign::of(sum);
+        }
         loop {
             let (sum, bound) = self.bilinear(v, w);
             if sum > bound {
@@ -458,6 +467,21 @@ impl PluckerSpace {
             return plucker::bilinear(a, b).sign();
         }
         sign_of(&self.big_bilinear(v, w))
+    }
+
+    /// The rounded bilinear form of two vertices and a bound of its error that is quick to find:
+    /// every magnitude in the bound of [`PluckerSpace::bilinear`] is replaced by the largest of its
+    /// kind, and there are three of each.
+    fn bilinear_coarse(&self, v: VertexId, w: VertexId) -> (f64, f64) {
+        let (a, b) = (&self.vertices[v.0 as usize], &self.vertices[w.0 as usize]);
+        let (x, y) = (&a.rounded, &b.rounded);
+        let sum = x[0] * y[3] + x[1] * y[4] + x[2] * y[5] + x[3] * y[0] + x[4] * y[1] + x[5] * y[2];
+        let part = |k: usize| {
+            let (s, t) = (a.size[k], b.size[1 - k]);
+            let (e, f) = (a.error[k], b.error[1 - k]);
+            s * t * FILTER + s * f + (t + f) * e
+        };
+        (sum, (part(0) + part(1)) * 3.03)
     }
 
     /// The rounded bilinear form of two vertices and a bound of its error (see [`PluckerSpace::dot`]).
@@ -523,6 +547,7 @@ impl PluckerSpace {
         self.vertices.push(VertexData {
             rounded,
             error: [0.0; 2],
+            size: largest(&rounded),
             exact,
             origin: None,
         });
@@ -591,8 +616,15 @@ const FILTER: f64 = 1.0 / (1_u64 << 48) as f64;
 /// The Mersenne prime 2^61 - 1.
 const PRIME: u64 = (1 << 61) - 1;
 
+/// For factors below the prime: 2^61 is 1 modulo 2^61 - 1, so the high part is added to the low one.
 fn mul_mod(a: u64, b: u64) -> u64 {
-    (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64
+    let product = u128::from(a) * u128::from(b);
+    let folded = (product as u64 & PRIME) + (product >> 61) as u64;
+    if folded >= PRIME {
+        folded - PRIME
+    } else {
+        folded
+    }
 }
 
 fn sub_mod(a: u64, b: u64) -> u64 {

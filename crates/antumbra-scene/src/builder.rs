@@ -116,12 +116,13 @@ impl SceneBuilder {
             .flat_map(|o| &o.parts)
             .map(|part| part.faces.len())
             .sum();
-        let nothing = || BuildError::NoTriangles {
+        let nothing = |step| BuildError::NoTriangles {
             scene: input.source_name.clone(),
             objects: input.objects.len(),
             faces,
+            step,
         };
-        let bounds = snap::checked_bounds(&input)?.ok_or_else(nothing)?;
+        let bounds = snap::checked_bounds(&input)?.ok_or_else(|| nothing(None))?;
         let bounds = with_cells(bounds, cells_box)?;
         let grid = snap::choose_grid(&input.source_name, bounds, grid)?;
 
@@ -135,7 +136,7 @@ impl SceneBuilder {
             .collect();
         let (scene, report) = assemble(&input, grid, heuristic, batches)?;
         if scene.polygon_count() == 0 {
-            return Err(nothing());
+            return Err(nothing(Some(scene.grid().step())));
         }
         Ok((scene, BuildReport { faces, ..report }))
     }
@@ -232,6 +233,9 @@ fn object_patches(
 /// Drops patches with the corners of an earlier one; of equal ones, one that occludes is kept.
 /// Returns how many were dropped.
 fn drop_duplicates(patches: &mut Vec<Patch>) -> usize {
+    if all_differ(patches) {
+        return 0;
+    }
     let sorted: Vec<Vec<u32>> = patches
         .iter()
         .map(|patch| {
@@ -257,6 +261,16 @@ fn drop_duplicates(patches: &mut Vec<Patch>) -> usize {
     let mut keep = keep.into_iter();
     patches.retain(|_| keep.next().unwrap_or(true));
     before - patches.len()
+}
+
+/// A quick test: different sums of corners mean different corners.
+fn all_differ(patches: &[Patch]) -> bool {
+    let mut sums: Vec<u64> = patches
+        .iter()
+        .map(|patch| patch.corners.iter().map(|&c| u64::from(c).pow(2)).sum())
+        .collect();
+    sums.sort_unstable();
+    sums.windows(2).all(|w| w[0] != w[1])
 }
 
 /// Puts the batches into one arena and builds the kD-tree over it.

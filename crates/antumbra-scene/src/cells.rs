@@ -2,12 +2,17 @@
 //!
 //! Cells are snapped outwards, so that a cell on the grid contains the cell asked for: lower
 //! bounds go down, upper bounds go up, and neighbors in a regular grid overlap by one grid step at
-//! most, never leaving a slit between them.
+//! most, never leaving a slit between them. The exception are rooms: a face less than one grid step
+//! from the plane of an occluding polygon goes to that plane, so that a cell flush with its walls
+//! stays flush with them and does not see through walls without thickness. What such a cell does
+//! not contain of the cell asked for is less than one step thick and behind that plane.
 
 mod auto;
+mod flush;
 mod spec;
 
-use antumbra_kernel::{Aabb, LIMIT, Point, Rounding};
+use antumbra_kernel::{Aabb, LIMIT, Point};
+use flush::Walls;
 
 use crate::{ObjectId, Scene};
 
@@ -18,7 +23,7 @@ pub use spec::{CellSpec, CellSpecError, NamedBox};
 pub struct ViewCell {
     /// Its name: `x_y_z` in a regular grid (indices from the minimum), else as given.
     pub name: String,
-    /// Its closed box in grid steps, snapped outwards.
+    /// Its closed box in grid steps: snapped outwards, or to a wall less than one step away.
     pub bounds: Aabb,
     /// What the source is.
     pub kind: CellKind,
@@ -155,7 +160,10 @@ pub fn make_cells(scene: &Scene, spec: &CellSpec) -> Result<Vec<ViewCell>, CellE
     match spec {
         CellSpec::Grid(size) => grid_cells(scene, *size),
         CellSpec::Boxes(boxes) if boxes.is_empty() => Err(CellError::NoBoxes),
-        CellSpec::Boxes(boxes) => boxes.iter().map(|b| box_cell(scene, b)).collect(),
+        CellSpec::Boxes(boxes) => {
+            let walls = Walls::of(scene);
+            boxes.iter().map(|b| box_cell(scene, &walls, b)).collect()
+        }
         CellSpec::Object(name) => object_cell(scene, name).map(|cell| vec![cell]),
         CellSpec::Auto => Ok(auto::cells(scene)),
     }
@@ -176,17 +184,15 @@ fn grid_cells(scene: &Scene, size: f64) -> Result<Vec<ViewCell>, CellError> {
         return Err(CellError::TooMany { size, count });
     }
     let counts = counts.map(|c| c as usize);
+    let walls = Walls::of(scene);
     let spans: [Vec<(i32, i32)>; 3] = std::array::from_fn(|k| {
         let (min, max) = (bounds.min.to_array()[k], bounds.max.to_array()[k]);
         let at = |i: usize| f64::from(min) + steps * i as f64;
         (0..counts[k])
             .map(|i| {
+                let (low, high) = walls.span(k, at(i), at(i + 1));
                 let last = i + 1 == counts[k];
-                let high = on_grid(at(i + 1).ceil());
-                (
-                    on_grid(at(i).floor()),
-                    if last { high.max(max) } else { high },
-                )
+                (low, if last { high.max(max) } else { high })
             })
             .collect()
     });
@@ -209,13 +215,7 @@ fn grid_cells(scene: &Scene, size: f64) -> Result<Vec<ViewCell>, CellError> {
     Ok(cells)
 }
 
-/// A whole grid value, cut off at the ends of the grid.
-fn on_grid(value: f64) -> i32 {
-    let end = f64::from(LIMIT - 1);
-    value.clamp(-end, end) as i32
-}
-
-fn box_cell(scene: &Scene, given: &NamedBox) -> Result<ViewCell, CellError> {
+fn box_cell(scene: &Scene, walls: &Walls, given: &NamedBox) -> Result<ViewCell, CellError> {
     let NamedBox { name, min, max } = given;
     if min.iter().chain(max).any(|c| !c.is_finite()) {
         return Err(CellError::NotFinite {
@@ -234,36 +234,23 @@ fn box_cell(scene: &Scene, given: &NamedBox) -> Result<ViewCell, CellError> {
         });
     }
     let grid = scene.grid();
-    let low = grid.snap_with(*min, [Rounding::Down; 3]);
-    let high = grid.snap_with(*max, [Rounding::Up; 3]);
-    match (low, high) {
-        (Ok(min), Ok(max)) => Ok(ViewCell {
+    let (low, high) = (grid.to_grid_f64(*min), grid.to_grid_f64(*max));
+    let reach = f64::from(LIMIT);
+    if (0..3).any(|k| low[k].floor() <= -reach || high[k].ceil() >= reach) {
+        return Err(CellError::OutsideGrid {
             name: name.clone(),
-            bounds: solid(min, max),
-            kind: CellKind::Box,
-        }),
-        _ => Err(CellError::OutsideGrid {
-            name: name.clone(),
-            reach: f64::from(LIMIT) * grid.step(),
-        }),
+            reach: reach * grid.step(),
+        });
     }
-}
-
-/// The box between two corners, at least one step wide: a cell so thin that the floats of both
-/// its sides fall on one grid value must keep an interior.
-fn solid(min: Point, max: Point) -> Aabb {
-    let (low, high) = (min.to_array(), max.to_array());
-    let widened = std::array::from_fn(|k| {
-        if high[k] > low[k] {
-            high[k]
-        } else {
-            (low[k] + 1).min(LIMIT - 1)
-        }
-    });
-    Aabb {
-        min,
-        max: Point::from(widened),
-    }
+    let spans = [0, 1, 2].map(|k| walls.span(k, low[k], high[k]));
+    Ok(ViewCell {
+        name: name.clone(),
+        bounds: Aabb {
+            min: Point::from(spans.map(|span| span.0)),
+            max: Point::from(spans.map(|span| span.1)),
+        },
+        kind: CellKind::Box,
+    })
 }
 
 fn object_cell(scene: &Scene, name: &str) -> Result<ViewCell, CellError> {

@@ -9,6 +9,7 @@
 
 mod build;
 mod meets;
+mod ropes;
 
 use antumbra_kernel::{Aabb, Point};
 
@@ -16,6 +17,7 @@ use crate::PolygonId;
 
 pub use build::KdHeuristic;
 pub(crate) use meets::Shape;
+pub use ropes::{BoxFace, Ropes};
 
 /// A kD-tree whose leaves list polygons; a polygon that straddles a split is listed on both sides.
 #[derive(Clone, Debug)]

@@ -17,7 +17,7 @@ pub use cells::{
     CellError, CellKind, CellSpec, CellSpecError, MAX_CELLS, NamedBox, ViewCell, make_cells,
 };
 pub use input::{Faces, ObjectInput, OccluderPolicy, PartInput, SceneInput};
-pub use kd::{KdBox, KdHeuristic, KdNode, KdTree, SeenPolygons};
+pub use kd::{BoxFace, KdBox, KdHeuristic, KdNode, KdTree, Ropes, SeenPolygons};
 pub use meet::{BoxContact, box_contact, polygons_touch};
 pub use report::{BuildReport, ObjectRepairs, RepairCounts};
 pub use scene::{Object, ObjectId, PolygonId, PolygonRef, Scene};

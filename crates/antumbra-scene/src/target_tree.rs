@@ -17,6 +17,31 @@ pub struct TargetNode {
     pub object: Option<ObjectId>,
     /// What is below.
     pub kind: TargetKind,
+    /// The places, in the order of the tree, of the objects below (see [`TargetTree::place`]).
+    pub first: u32,
+    /// How many objects are below.
+    pub count: u32,
+    /// The node above; the root is its own.
+    pub parent: u32,
+}
+
+impl TargetNode {
+    fn new(bounds: Aabb, object: Option<ObjectId>, kind: TargetKind) -> Self {
+        Self {
+            bounds,
+            object,
+            kind,
+            first: 0,
+            count: 0,
+            parent: 0,
+        }
+    }
+
+    /// The places of the objects below.
+    #[must_use]
+    pub fn places(&self) -> std::ops::Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
+    }
 }
 
 /// What is below a [`TargetNode`].
@@ -34,6 +59,9 @@ pub struct TargetTree {
     nodes: Vec<TargetNode>,
     root: Option<u32>,
     roots: Vec<Option<u32>>,
+    /// Objects in the order of the tree, and the place of each in that order.
+    order: Vec<ObjectId>,
+    places: Vec<u32>,
 }
 
 struct Item {
@@ -57,11 +85,7 @@ impl TargetTree {
                     let polygon = PolygonId(p);
                     let bounds = scene.polygon(polygon).bounds();
                     let kind = TargetKind::Polygon(polygon);
-                    nodes.push(TargetNode {
-                        bounds,
-                        object: Some(id),
-                        kind,
-                    });
+                    nodes.push(TargetNode::new(bounds, Some(id), kind));
                     Item {
                         bounds,
                         node: nodes.len() as u32 - 1,
@@ -78,7 +102,63 @@ impl TargetTree {
             roots.push(root);
         }
         let root = build(&mut nodes, &mut objects, None);
-        Self { nodes, root, roots }
+        let mut tree = Self {
+            nodes,
+            root,
+            roots,
+            order: Vec::with_capacity(objects.len()),
+            places: vec![u32::MAX; scene.objects().len()],
+        };
+        if let Some(root) = root {
+            tree.number(root, root);
+        }
+        // Objects without polygons come last.
+        for i in 0..tree.places.len() {
+            if tree.places[i] == u32::MAX {
+                tree.places[i] = tree.order.len() as u32;
+                tree.order.push(ObjectId(i as u32));
+            }
+        }
+        tree
+    }
+
+    /// Gives the objects below a node their places.
+    fn number(&mut self, index: u32, parent: u32) {
+        let node = self.nodes[index as usize];
+        let mut first = self.order.len() as u32;
+        match node.object {
+            Some(object) if self.places[object.index()] == u32::MAX => {
+                self.places[object.index()] = first;
+                self.order.push(object);
+            }
+            Some(object) => first = self.places[object.index()],
+            None => {}
+        }
+        if let TargetKind::Inner(a, b) = node.kind {
+            self.number(a, index);
+            self.number(b, index);
+        }
+        let end = self.order.len() as u32;
+        let node = &mut self.nodes[index as usize];
+        (node.first, node.count, node.parent) = (first, end - first, parent);
+    }
+
+    /// The place of an object in the order of the tree, in which every node covers a range.
+    #[must_use]
+    pub fn place(&self, id: ObjectId) -> usize {
+        self.places[id.index()] as usize
+    }
+
+    /// The object at a place.
+    #[must_use]
+    pub fn object_at(&self, place: usize) -> ObjectId {
+        self.order[place]
+    }
+
+    /// How many nodes there are.
+    #[must_use]
+    pub fn node_count(&self) -> usize {
+        self.nodes.len()
     }
 
     /// The node over all objects; `None` for an empty scene.
@@ -111,11 +191,11 @@ fn build(nodes: &mut Vec<TargetNode>, items: &mut [Item], object: Option<ObjectI
             let bounds = nodes[left as usize]
                 .bounds
                 .union(nodes[right as usize].bounds);
-            nodes.push(TargetNode {
+            nodes.push(TargetNode::new(
                 bounds,
                 object,
-                kind: TargetKind::Inner(left, right),
-            });
+                TargetKind::Inner(left, right),
+            ));
             Some(nodes.len() as u32 - 1)
         }
     }
@@ -148,24 +228,53 @@ fn partition(items: &mut [Item]) -> usize {
         counts[b] += 1;
         boxes[b] = Some(boxes[b].map_or(item.bounds, |x| x.union(item.bounds)));
     }
+    let (below, above) = (running(&boxes, &counts), {
+        let (mut boxes, mut counts) = (boxes, counts);
+        boxes.reverse();
+        counts.reverse();
+        running(&boxes, &counts)
+    });
     let best = (1..BINS)
-        .filter(|&s| counts[..s].iter().sum::<usize>() > 0 && counts[s..].iter().sum::<usize>() > 0)
-        .min_by(|&s, &t| cost(&boxes, &counts, s).total_cmp(&cost(&boxes, &counts, t)));
+        .filter(|&s| below[s].count > 0 && above[BINS - s].count > 0)
+        .map(|s| (s, below[s].cost() + above[BINS - s].cost()))
+        .min_by(|(_, a), (_, b)| a.total_cmp(b))
+        .map(|(s, _)| s);
     let Some(best) = best else {
         return items.len() / 2;
     };
     items.sort_by_key(|i| bin(&i.bounds) >= best);
-    items.iter().take_while(|i| bin(&i.bounds) < best).count()
+    below[best].count
 }
 
-fn cost(boxes: &[Option<Aabb>; BINS], counts: &[usize; BINS], at: usize) -> f64 {
-    let half = |range: std::ops::Range<usize>| {
-        let n: usize = counts[range.clone()].iter().sum();
-        let bounds = boxes[range].iter().flatten().copied().reduce(Aabb::union);
-        bounds.map_or(0.0, |b| {
+/// The first so many bins together.
+#[derive(Clone, Copy, Default)]
+struct Part {
+    bounds: Option<Aabb>,
+    count: usize,
+}
+
+impl Part {
+    fn cost(&self) -> f64 {
+        self.bounds.map_or(0.0, |b| {
             let e = b.extent().map(|c| c as f64);
-            n as f64 * (e[0] * e[1] + e[1] * e[2] + e[2] * e[0])
+            self.count as f64 * (e[0] * e[1] + e[1] * e[2] + e[2] * e[0])
         })
-    };
-    half(0..at) + half(at..BINS)
+    }
+}
+
+/// For each number of bins, those before it together.
+fn running(boxes: &[Option<Aabb>; BINS], counts: &[usize; BINS]) -> [Part; BINS] {
+    let mut parts = [Part::default(); BINS];
+    for i in 1..BINS {
+        let before = parts[i - 1];
+        let bounds = match (before.bounds, boxes[i - 1]) {
+            (Some(a), Some(b)) => Some(a.union(b)),
+            (a, b) => a.or(b),
+        };
+        parts[i] = Part {
+            bounds,
+            count: before.count + counts[i - 1],
+        };
+    }
+    parts
 }

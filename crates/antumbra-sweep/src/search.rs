@@ -12,8 +12,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use antumbra_kernel::Plane;
 use antumbra_lines::{
-    Cone, ConeError, Gate, Halfspace, PluckerSpace, RealLines, Split, nearly_real, real_lines,
-    start_halfspaces,
+    Cone, ConeError, Gate, Halfspace, PluckerSpace, RaySigns, RealLines, Split, nearly_real,
+    real_lines, start_halfspaces,
 };
 use antumbra_scene::PolygonId;
 use dashu_int::IBig;
@@ -110,6 +110,20 @@ enum Slot {
         inside: usize,
         outside: usize,
     },
+}
+
+/// A row of a blocker cone, with its signs on the cone that it will cut.
+struct Cut {
+    halfspace: Halfspace,
+    name: RowName,
+    signs: RaySigns,
+}
+
+/// An occluder that blocks a part of a cone.
+struct Blocking {
+    polygon: PolygonId,
+    negative: bool,
+    cuts: Vec<Cut>,
 }
 
 struct Frame<'q> {
@@ -255,7 +269,7 @@ impl Searcher {
                 break;
             }
             match self.choose(frame, &cone, &segments) {
-                Ok(blocker) => return self.subtract(frame, cone, slot, slots, stack, blocker),
+                Ok(blocker) => return self.subtract(cone, slot, slots, stack, blocker),
                 Err(Answer::Undecided(Undecided::Thin)) => {}
                 Err(answer) => return Err(answer),
             }
@@ -263,7 +277,7 @@ impl Searcher {
         for _ in 0..PATIENCE / 10 {
             let segments = self.thin_segments(frame.question, &cone, rng);
             match self.choose(frame, &cone, &segments) {
-                Ok(blocker) => return self.subtract(frame, cone, slot, slots, stack, blocker),
+                Ok(blocker) => return self.subtract(cone, slot, slots, stack, blocker),
                 Err(Answer::Undecided(Undecided::Thin)) => {}
                 Err(answer) => return Err(answer),
             }
@@ -291,15 +305,47 @@ impl Searcher {
             .collect()
     }
 
-    /// The occluder that blocks most sampled lines, with the direction in which it is crossed; or
-    /// a free line as an answer.
+    /// The occluder that blocks most sampled lines of those whose blocker cones meet the cone; or a
+    /// free line as an answer.
     fn choose(
         &mut self,
         frame: &mut Frame<'_>,
         cone: &Cone,
         segments: &[Segment],
-    ) -> Result<(PolygonId, bool), Answer> {
-        let question = frame.question;
+    ) -> Result<Blocking, Answer> {
+        // Doubles see a line blocked that only touches an occluder, at the rim of the cone or in
+        // the target's plane. Such an occluder must not keep others from being asked.
+        let mut refused: Vec<(PolygonId, bool)> = Vec::new();
+        loop {
+            let tally = self.votes(frame.question, segments, &refused)?;
+            let before = refused.len();
+            while let Some((id, negative)) = tally.best(&refused) {
+                if let Some(cuts) = self.cuts(frame, cone, id, negative) {
+                    return Ok(Blocking {
+                        polygon: id,
+                        negative,
+                        cuts,
+                    });
+                }
+                refused.push((id, negative));
+            }
+            if refused.len() == before {
+                return Err(Answer::Undecided(Undecided::Thin));
+            }
+        }
+    }
+
+    /// Which occluders block how many of the sampled lines, those refused apart; or a free line as
+    /// an answer.
+    fn votes(
+        &self,
+        question: &Question<'_>,
+        segments: &[Segment],
+        refused: &[(PolygonId, bool)],
+    ) -> Result<Tally, Answer> {
+        let blocked = |id: PolygonId, s: &Segment| {
+            blocks(question, id, s).filter(|&negative| !refused.contains(&(id, negative)))
+        };
         // Known blockers first: the scene is asked only about lines that none of them blocks.
         let mut tally = Tally::default();
         let mut candidates: Vec<(PolygonId, usize)> =
@@ -307,7 +353,7 @@ impl Searcher {
         for (i, s) in segments.iter().enumerate() {
             let mut any = false;
             for (id, _) in &candidates {
-                if let Some(negative) = blocks(question, *id, s) {
+                if let Some(negative) = blocked(*id, s) {
                     tally.add(*id, negative);
                     any = true;
                 }
@@ -320,7 +366,7 @@ impl Searcher {
                 .visit(s, (-1e-9, 1.0 + 1e-9), SAMPLING_SLACK, |items, _, _| {
                     for &id in items {
                         if candidates.iter().all(|c| c.0 != id)
-                            && let Some(negative) = blocks(question, id, s)
+                            && let Some(negative) = blocked(id, s)
                         {
                             any = true;
                             tally.add(id, negative);
@@ -346,46 +392,45 @@ impl Searcher {
         for &(id, found) in &candidates {
             if found < segments.len() {
                 for s in &segments[..found] {
-                    if let Some(negative) = blocks(question, id, s) {
+                    if let Some(negative) = blocked(id, s) {
                         tally.add(id, negative);
                     }
                 }
             }
         }
-        let mut refused: Vec<(PolygonId, bool)> = Vec::new();
-        loop {
-            let Some((id, negative, _)) = tally.best(&refused) else {
-                return Err(Answer::Undecided(Undecided::Thin));
-            };
-            if self.progresses(frame, cone, id, negative) {
-                return Ok((id, negative));
-            }
-            refused.push((id, negative));
-        }
+        Ok(tally)
     }
 
-    /// Whether an occluder's blocker cone meets the interior of a cone.
-    fn progresses(
+    /// The rows of an occluder's blocker cone with their signs on a cone, if the two meet inside.
+    fn cuts(
         &mut self,
         frame: &mut Frame<'_>,
         cone: &Cone,
         id: PolygonId,
         negative: bool,
-    ) -> bool {
-        let Some(rows) = self.rows(frame, id, negative) else {
-            return false;
-        };
-        rows.iter().all(|(h, _)| {
-            cone.position(&mut self.space, *h) != Some(antumbra_kernel::Sign::Negative)
-        })
+    ) -> Option<Vec<Cut>> {
+        let rows = self.rows(frame, id, negative)?;
+        let mut cuts = Vec::with_capacity(rows.len());
+        for &(halfspace, name) in rows {
+            let signs = cone.signs(&mut self.space, halfspace);
+            if signs.inside() == 0 {
+                return None;
+            }
+            cuts.push(Cut {
+                halfspace,
+                name,
+                signs,
+            });
+        }
+        Some(cuts)
     }
 
-    fn rows(
+    fn rows<'f>(
         &mut self,
-        frame: &mut Frame<'_>,
+        frame: &'f mut Frame<'_>,
         id: PolygonId,
         negative: bool,
-    ) -> Option<Vec<(Halfspace, RowName)>> {
+    ) -> Option<&'f [(Halfspace, RowName)]> {
         let question = frame.question;
         let cones = frame.cones.entry(id).or_insert_with(|| {
             let polygon = question.caster.scene().polygon(id);
@@ -400,43 +445,45 @@ impl Searcher {
         cones
             .iter()
             .find(|c| c.negative == negative)
-            .map(|c| c.rows.clone())
+            .map(|c| c.rows.as_slice())
     }
 
     /// Cuts a blocker out of a cone: the parts outside go to the stack, the part inside is done.
     fn subtract(
         &mut self,
-        frame: &mut Frame<'_>,
-        cone: Cone,
-        slot: usize,
+        mut cone: Cone,
+        mut slot: usize,
         slots: &mut Vec<Slot>,
         stack: &mut Vec<(Cone, usize)>,
-        (id, negative): (PolygonId, bool),
+        blocking: Blocking,
     ) -> Result<(), Answer> {
-        self.remember(id);
-        let rows = self.rows(frame, id, negative).unwrap_or_default();
-        // Small parts outside first: what is left inside then meets fewer rows.
-        let mut order: Vec<(usize, usize)> = Vec::with_capacity(rows.len());
-        for (i, (h, _)) in rows.iter().enumerate() {
-            let (_, outside) = cone.count_outside(&mut self.space, *h);
-            if outside > 0 {
-                order.push((outside, i));
-            }
-        }
-        order.sort_unstable();
-        let mut cone = cone;
-        let mut slot = slot;
-        for (_, i) in order {
-            let (h, name) = rows[i];
+        let Blocking {
+            polygon,
+            negative,
+            mut cuts,
+        } = blocking;
+        self.remember(polygon);
+        cuts.retain(|c| c.signs.outside() > 0);
+        // Small parts outside first: what is left inside then meets fewer rows. From the end.
+        cuts.sort_by_key(|c| std::cmp::Reverse(c.signs.outside()));
+        while let Some(cut) = cuts.pop() {
             self.work.splits += 1;
-            match cone.split(&mut self.space, h) {
+            match cone.split_by(&mut self.space, cut.halfspace, &cut.signs) {
                 Ok(Split::Inside) => {}
                 Ok(Split::Both(inside, outside)) => {
+                    for other in &mut cuts {
+                        other.signs = inside.inherited_signs(
+                            &mut self.space,
+                            other.halfspace,
+                            &other.signs,
+                            &cut.signs,
+                        );
+                    }
                     let (a, b) = (slots.len(), slots.len() + 1);
                     slots.push(Slot::Open);
                     slots.push(Slot::Open);
                     let node = Node::Split {
-                        row: name,
+                        row: cut.name,
                         negative,
                     };
                     slots[slot] = Slot::Split {
@@ -456,10 +503,7 @@ impl Searcher {
                 Err(_) => return Err(Answer::Undecided(Undecided::Thin)),
             }
         }
-        slots[slot] = Slot::Done(Node::Blocked {
-            polygon: id,
-            negative,
-        });
+        slots[slot] = Slot::Done(Node::Blocked { polygon, negative });
         Ok(())
     }
 
@@ -491,12 +535,12 @@ impl Tally {
         }
     }
 
-    fn best(&self, refused: &[(PolygonId, bool)]) -> Option<(PolygonId, bool, u32)> {
+    fn best(&self, refused: &[(PolygonId, bool)]) -> Option<(PolygonId, bool)> {
         self.votes
             .iter()
             .filter(|v| !refused.contains(&(v.0, v.1)))
             .max_by_key(|v| (v.2, std::cmp::Reverse(v.0)))
-            .map(|v| (v.0, v.1, v.2))
+            .map(|v| (v.0, v.1))
     }
 }
 

@@ -73,14 +73,15 @@ pub(crate) fn run(args: &BakeArgs, global: &Global) -> Result<(), Failure> {
         Some(path) => path.clone(),
         None => default_output(&args.scene.scene),
     };
-    check_writable(&path)?;
+    check_writable(&path, &[&args.scene.scene])?;
     let (spec, cells_box) = cells(&args.cells)?;
     let loaded = load(&args.scene, global, cells_box)?;
     if !loaded.report.repairs.is_empty() {
         output.note(&repairs(&loaded.report.to_string(), args.report));
     }
     let scene = &loaded.scene;
-    let cells = make_cells(scene, &spec).map_err(|e| Failure::Content(e.to_string()))?;
+    let cells = make_cells(scene, &spec)
+        .map_err(|e| Failure::Content(format!("{}: {e}", args.scene.scene.display())))?;
     let name = args.cells.split(':').next().unwrap_or_default();
     let recipe = Recipe {
         cells: if name == "boxes" {
@@ -102,7 +103,6 @@ pub(crate) fn run(args: &BakeArgs, global: &Global) -> Result<(), Failure> {
         proofs: !args.no_proofs,
         resume: args.resume,
         path: &path,
-        threads: global.threads,
     };
     let baked = bake(&job, output)?;
     let accuracy = accuracy_name(baked.totals.accuracy);
@@ -119,7 +119,7 @@ pub(crate) fn run(args: &BakeArgs, global: &Global) -> Result<(), Failure> {
         "proof_bytes": baked.finished.proof_bytes,
         "seconds": seconds(baked.bake_time),
         "load_seconds": seconds(loaded.load_time),
-        "build_seconds": seconds(loaded.build_time),
+        "build_seconds": seconds(loaded.build_time + baked.prepare_time),
         "write_seconds": seconds(baked.write_time),
     });
     let text = format!(
@@ -190,13 +190,14 @@ pub(crate) struct Job<'a> {
     pub proofs: bool,
     pub resume: bool,
     pub path: &'a Path,
-    pub threads: Option<u16>,
 }
 
 /// What a finished bake amounts to.
 pub(crate) struct Baked {
     pub totals: Totals,
     pub finished: Finished,
+    /// Building what the cells share.
+    pub prepare_time: Duration,
     pub bake_time: Duration,
     pub write_time: Duration,
 }
@@ -208,7 +209,6 @@ pub(crate) fn bake(job: &Job<'_>, output: Output) -> Result<Baked, Failure> {
             "there is no view cell to bake; choose other cells with --cells".to_owned(),
         ));
     }
-    let pool = thread_pool(job.threads)?;
     let cancel = on_interrupt()?;
     let start = Instant::now();
     let header = header(job.scene, job.cells, job.recipe, job.proofs);
@@ -223,6 +223,10 @@ pub(crate) fn bake(job: &Job<'_>, output: Output) -> Result<Baked, Failure> {
     let mut write_time = start.elapsed();
 
     let start = Instant::now();
+    let baker = Baker::new(job.scene);
+    let prepare_time = start.elapsed();
+
+    let start = Instant::now();
     let bar = output.progress(job.cells.len() as u64, "cells");
     bar.inc(done.len() as u64);
     let options = BakeOptions {
@@ -232,7 +236,6 @@ pub(crate) fn bake(job: &Job<'_>, output: Output) -> Result<Baked, Failure> {
         cancel: Some(Arc::clone(&cancel)),
         max_splits: job.recipe.max_splits,
     };
-    let baker = Baker::new(job.scene);
     let left: Vec<u32> = (0..job.cells.len() as u32)
         .filter(|i| !done.contains(i))
         .collect();
@@ -249,7 +252,7 @@ pub(crate) fn bake(job: &Job<'_>, output: Output) -> Result<Baked, Failure> {
         bar.inc(1);
         Ok(())
     };
-    let outcome = pool.install(|| left.par_iter().with_max_len(1).try_for_each(one));
+    let outcome = left.par_iter().with_max_len(1).try_for_each(one);
     let finished_cells = bar.position();
     bar.finish_and_clear();
     let bake_time = start.elapsed();
@@ -269,6 +272,7 @@ pub(crate) fn bake(job: &Job<'_>, output: Output) -> Result<Baked, Failure> {
     Ok(Baked {
         totals,
         finished,
+        prepare_time,
         bake_time,
         write_time,
     })
@@ -276,17 +280,4 @@ pub(crate) fn bake(job: &Job<'_>, output: Output) -> Result<Baked, Failure> {
 
 fn cancelled_before(cancel: &AtomicBool, finished: u64, cells: usize) -> bool {
     cancel.load(Ordering::SeqCst) && finished < cells as u64
-}
-
-/// A pool of threads; all cores if their number is not given.
-pub(crate) fn thread_pool(threads: Option<u16>) -> Result<rayon::ThreadPool, Failure> {
-    let count = usize::from(threads.unwrap_or(0));
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(count)
-        .build()
-        .map_err(|cause| {
-            Failure::Usage(format!(
-                "{count} threads cannot be started ({cause}); give fewer with --threads"
-            ))
-        })
 }

@@ -73,13 +73,12 @@ pub(crate) fn run(args: &DemoArgs, global: &Global) -> Result<(), Failure> {
         proofs: true,
         resume: false,
         path: pvs,
-        threads: global.threads,
     };
     let baked = bake(&job, output)?;
 
     let file = open(pvs)?;
     let proofs = open_proofs(pvs, &file)?;
-    let checked = check(&file, &proofs, &scene, global.threads, output)?;
+    let checked = check(&file, &proofs, &scene, output)?;
     let failed = checked.report.failed.len();
 
     let (index, shown) = cell(&file, SHOWN)?;
@@ -99,7 +98,7 @@ pub(crate) fn run(args: &DemoArgs, global: &Global) -> Result<(), Failure> {
         "grid": scene.grid().step(),
         "seconds": seconds(baked.bake_time),
         "load_seconds": 0.0,
-        "build_seconds": seconds(build_time),
+        "build_seconds": seconds(build_time + baked.prepare_time),
         "write_seconds": seconds(baked.write_time),
         "check_seconds": seconds(checked.time),
         "visible_checked": checked.report.visible_checked,

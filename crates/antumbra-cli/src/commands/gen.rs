@@ -40,7 +40,7 @@ enum Kind {
     /// Equilateral triangles, randomly placed and turned in a cube of 100 m
     RandomTriangles {
         /// How many
-        #[arg(long, value_name = "N", default_value_t = 1000)]
+        #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=2_000_000))]
         count: u32,
         /// Area of each triangle in square metres, at most 5000
         #[arg(long, value_name = "A", default_value_t = 50.0, value_parser = positive)]
@@ -74,7 +74,7 @@ enum Kind {
 #[derive(Args, Clone, Copy, Debug)]
 struct Layers {
     /// How many layers
-    #[arg(long, value_name = "N", default_value_t = 20)]
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=5000))]
     layers: u32,
     /// Area of the source in square metres
     #[arg(long, value_name = "S", default_value_t = 2.0, value_parser = positive)]
@@ -105,7 +105,7 @@ pub(crate) fn run(args: &GenArgs, global: &Global) -> Result<(), Failure> {
         Failure::Usage("the file to write is missing; give it with -o FILE.glb".to_owned())
     })?;
     let format = format_of(path)?;
-    check_writable(path)?;
+    check_writable(path, &[])?;
     let (scene, mut parameters) = make(&args.kind, global.seed)?;
     let bytes = match format {
         Format::Glb => {

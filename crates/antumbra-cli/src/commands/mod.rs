@@ -16,6 +16,7 @@ use crate::failure::Failure;
 /// Runs the command that was asked for.
 pub(crate) fn run(cli: Cli) -> Result<(), Failure> {
     let global = cli.global;
+    start_threads(global.threads)?;
     match cli.command {
         Command::Bake(args) => bake::run(&args, &global),
         Command::Pvs(command) => pvs::run(&command, &global),
@@ -27,4 +28,17 @@ pub(crate) fn run(cli: Cli) -> Result<(), Failure> {
         Command::Completions(args) => completions::run(&args),
         Command::Man(args) => man::run(&args),
     }
+}
+
+/// The threads that read, build, bake and check; all cores if their number is not given.
+fn start_threads(threads: Option<u16>) -> Result<(), Failure> {
+    let Some(count) = threads else { return Ok(()) };
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(usize::from(count))
+        .build_global()
+        .map_err(|cause| {
+            Failure::Usage(format!(
+                "{count} threads cannot be started ({cause}); give fewer with --threads"
+            ))
+        })
 }

@@ -17,7 +17,13 @@ pub(super) fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Damage> {
         );
         Damage::broken(Place::Byte(bytes.len() as u64), found)
     };
-    cursor.take(MAGIC.len()).ok_or_else(short)?;
+    if cursor.take(MAGIC.len()).ok_or_else(short)? != MAGIC {
+        return Err(Damage::new(
+            Place::Byte(0),
+            "this is no GLB file, which begins with the letters glTF",
+            "give a glTF, GLB, OBJ, PLY or STL file",
+        ));
+    }
     let version = cursor.u32().ok_or_else(short)?;
     if version != 2 {
         let found = format!("GLB version {version}, expected 2");

@@ -39,8 +39,8 @@ pub enum BuildError {
     },
     /// There is nothing to see: no face at all, or none that survives snapping.
     #[error(
-        "{scene}: no triangles: {objects} objects with {faces} faces, none of which has an area \
-         on the grid: a scene needs at least one polygon"
+        "{scene}: no triangles: of {faces} faces in {objects} objects none has an area{}: a scene \
+         needs at least one polygon", on_grid(*step)
     )]
     NoTriangles {
         /// Name of the source.
@@ -49,6 +49,8 @@ pub enum BuildError {
         objects: usize,
         /// How many faces were given; all of them were degenerate.
         faces: usize,
+        /// The step of the grid they were snapped to, if it came to that.
+        step: Option<f64>,
     },
     /// The scene does not fit the grid that was asked for.
     #[error(
@@ -96,4 +98,13 @@ pub enum BuildError {
         /// How many corners there would be.
         corners: usize,
     },
+}
+
+fn on_grid(step: Option<f64>) -> String {
+    step.map_or(String::new(), |step| {
+        format!(
+            " on a grid of step {step}, which has to hold the scene and its view cells; if they are \
+             larger than that, give a finer grid or cells nearer by"
+        )
+    })
 }

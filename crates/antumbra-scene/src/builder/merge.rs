@@ -22,33 +22,30 @@ use super::plane::Frame;
 
 /// Merges the patches of one object, and drops those that the others of their plane cover.
 /// Returns the rest, ordered by the first patch each one contains, and how many were dropped.
-pub(crate) fn merge(points: &[Point], patches: Vec<Patch>) -> (Vec<Patch>, usize) {
+pub(crate) fn merge(points: &[Point], mut patches: Vec<Patch>) -> (Vec<Patch>, usize) {
     if patches.len() < 2 {
         return (patches, 0);
     }
     let mut dropped = 0;
-    let key = |i: usize| {
-        let Plane { normal, offset } = patches[i].plane;
-        (normal, offset, patches[i].occludes)
+    let key = |(i, patch): (usize, &Patch)| {
+        let Plane { normal, offset } = patch.plane;
+        ((normal, offset, patch.occludes), i)
     };
-    let mut order: Vec<usize> = (0..patches.len()).collect();
-    order.sort_unstable_by_key(|&i| (key(i), i));
+    let mut order: Vec<_> = patches.iter().enumerate().map(key).collect();
+    order.sort_unstable();
     let mut kept: Vec<(usize, Patch)> = Vec::with_capacity(patches.len());
-    for group in order.chunk_by(|&i, &j| key(i) == key(j)) {
-        if let [single] = *group {
-            kept.push((single, patches[single].clone()));
-            continue;
-        }
-        let polygons: Vec<Vec<u32>> = group.iter().map(|&i| patches[i].corners.clone()).collect();
+    for group in order.chunk_by(|x, y| x.0 == y.0) {
+        let mut corners = |i: usize| std::mem::take(&mut patches[i].corners);
+        let polygons: Vec<Vec<u32>> = group.iter().map(|&(_, i)| corners(i)).collect();
         let Patch {
             plane, occludes, ..
-        } = patches[group[0]];
+        } = patches[group[0].1];
         let frame = Frame::facing(plane.normal);
         let mut merged = merge_plane(points, frame, polygons);
         dropped += drop_covered(points, frame, &mut merged);
         for (first, corners) in merged {
             kept.push((
-                group[first],
+                group[first].1,
                 Patch {
                     corners,
                     plane,
@@ -63,6 +60,17 @@ pub(crate) fn merge(points: &[Point], patches: Vec<Patch>) -> (Vec<Patch>, usize
 
 /// Merges polygons of one plane; each comes back with the smallest index it contains.
 fn merge_plane(points: &[Point], frame: Frame, polygons: Vec<Vec<u32>>) -> Vec<(usize, Vec<u32>)> {
+    match polygons.as_slice() {
+        [_] => return polygons.into_iter().enumerate().collect(),
+        // Two triangles of a rectangle: so common that they are worth no map of edges.
+        [left, right] => {
+            return match merge_two(points, frame, left, right) {
+                Some(union) => vec![(0, union)],
+                None => polygons.into_iter().enumerate().collect(),
+            };
+        }
+        _ => {}
+    }
     let mut plan = Merger::new(points, frame, polygons);
     while let Some((_, a, b)) = plan.candidates.pop() {
         plan.merge_along(a, b);
@@ -72,6 +80,26 @@ fn merge_plane(points: &[Point], frame: Frame, polygons: Vec<Vec<u32>>) -> Vec<(
         .enumerate()
         .filter(|(_, corners)| !corners.is_empty())
         .collect()
+}
+
+/// The convex union of two polygons along their common edge, if they have one: convex polygons on
+/// opposite sides of an edge share no other.
+fn merge_two(points: &[Point], frame: Frame, left: &[u32], right: &[u32]) -> Option<Vec<u32>> {
+    let passes = |polygon: &[u32], a: u32, b: u32| {
+        (0..polygon.len()).any(|k| polygon[k] == a && polygon[(k + 1) % polygon.len()] == b)
+    };
+    (0..left.len())
+        .map(|k| (left[k], left[(k + 1) % left.len()]))
+        .find(|&(a, b)| passes(right, b, a))
+        .and_then(|(a, b)| {
+            // As along any other edge, from its smaller vertex.
+            if a < b {
+                Union::of(points, frame, left, right, a, b)
+            } else {
+                Union::of(points, frame, right, left, b, a)
+            }
+        })
+        .map(|union| union.corners)
 }
 
 struct Merger<'a> {
@@ -120,7 +148,9 @@ impl<'a> Merger<'a> {
     fn merge_along(&mut self, a: u32, b: u32) {
         for left in self.holders(a, b) {
             for right in self.holders(b, a) {
-                if let Some(union) = self.union(left, right, a, b) {
+                let polygon = |i: u32| self.polygons[i as usize].as_slice();
+                let union = Union::of(self.points, self.frame, polygon(left), polygon(right), a, b);
+                if let Some(union) = union {
                     self.replace(left, right, union);
                     break;
                 }
@@ -147,43 +177,12 @@ impl<'a> Merger<'a> {
         holders
     }
 
-    /// The convex union of `left`, which passes from `a` to `b`, and `right`, which passes back.
-    fn union(&self, left: u32, right: u32, a: u32, b: u32) -> Option<Union> {
-        let from_b = rotated(&self.polygons[left as usize], b);
-        let from_a = rotated(&self.polygons[right as usize], a);
-        // from_b ends in a, from_a ends in b.
-        let (before_a, after_a) = (from_b[from_b.len() - 2], from_a[1]);
-        let (before_b, after_b) = (from_a[from_a.len() - 2], from_b[1]);
-        let turn_a = self.turn(before_a, a, after_a);
-        let turn_b = self.turn(before_b, b, after_b);
-        if turn_a < 0 || turn_b < 0 {
-            return None;
-        }
-        let mut corners = Vec::with_capacity(from_a.len() + from_b.len() - 2);
-        corners.extend_from_slice(&from_b[usize::from(turn_b == 0)..from_b.len() - 1]);
-        corners.extend_from_slice(&from_a[usize::from(turn_a == 0)..from_a.len() - 1]);
-        let mut fresh = Vec::new();
-        // Where a corner vanished, one longer edge has come from two.
-        if turn_a == 0 {
-            fresh.push((before_a, after_a));
-        }
-        if turn_b == 0 {
-            fresh.push((before_b, after_b));
-        }
-        Some(Union { corners, fresh })
-    }
-
-    fn turn(&self, a: u32, b: u32, c: u32) -> i64 {
-        let [a, b, c] = [a, b, c].map(|i| self.points[i as usize]);
-        self.frame.turn(a, b, c)
-    }
-
     fn replace(&mut self, left: u32, right: u32, union: Union) {
         let (keep, gone) = (left.min(right), left.max(right));
         self.into[gone as usize] = keep;
         self.polygons[gone as usize] = Vec::new();
         self.polygons[keep as usize] = union.corners;
-        for (a, b) in union.fresh {
+        for (a, b) in union.fresh.into_iter().flatten() {
             self.enter(a, b, keep);
         }
     }
@@ -191,7 +190,43 @@ impl<'a> Merger<'a> {
 
 struct Union {
     corners: Vec<u32>,
-    fresh: Vec<(u32, u32)>,
+    /// Where a corner vanished, one longer edge has come from two.
+    fresh: [Option<(u32, u32)>; 2],
+}
+
+impl Union {
+    /// The convex union of `left`, which passes from `a` to `b`, and `right`, which passes back.
+    fn of(
+        points: &[Point],
+        frame: Frame,
+        left: &[u32],
+        right: &[u32],
+        a: u32,
+        b: u32,
+    ) -> Option<Self> {
+        let from_b = rotated(left, b);
+        let from_a = rotated(right, a);
+        // from_b ends in a, from_a ends in b.
+        let (before_a, after_a) = (from_b[from_b.len() - 2], from_a[1]);
+        let (before_b, after_b) = (from_a[from_a.len() - 2], from_b[1]);
+        let turn = |a: u32, b: u32, c: u32| {
+            let [a, b, c] = [a, b, c].map(|i| points[i as usize]);
+            frame.turn(a, b, c)
+        };
+        let turn_a = turn(before_a, a, after_a);
+        let turn_b = turn(before_b, b, after_b);
+        if turn_a < 0 || turn_b < 0 {
+            return None;
+        }
+        let mut corners = Vec::with_capacity(from_a.len() + from_b.len() - 2);
+        corners.extend_from_slice(&from_b[usize::from(turn_b == 0)..from_b.len() - 1]);
+        corners.extend_from_slice(&from_a[usize::from(turn_a == 0)..from_a.len() - 1]);
+        let fresh = [
+            (turn_a == 0).then_some((before_a, after_a)),
+            (turn_b == 0).then_some((before_b, after_b)),
+        ];
+        Some(Self { corners, fresh })
+    }
 }
 
 /// The polygon that now contains a given one; shortens the way for the next time.

@@ -84,6 +84,12 @@ impl PointTree {
     }
 }
 
+/// Whether a point is not farther than one grid step, in each coordinate, from some point of a
+/// segment. Exact.
+pub(crate) fn is_near(a: Point, b: Point, p: Point) -> bool {
+    Segment::new(a, b).is_near(&Aabb { min: p, max: p })
+}
+
 /// A segment by twice its middle and twice its half-extent, so that both are integers.
 struct Segment {
     middle: [i64; 3],
@@ -119,13 +125,12 @@ impl Segment {
 
 #[cfg(test)]
 mod tests {
-    use antumbra_kernel::{Aabb, LIMIT, Point};
+    use antumbra_kernel::{LIMIT, Point};
 
-    use super::{PointTree, Segment};
+    use super::{PointTree, is_near};
 
     fn near(a: [i32; 3], b: [i32; 3], p: [i32; 3]) -> bool {
-        let p = Point::from(p);
-        Segment::new(a.into(), b.into()).is_near(&Aabb { min: p, max: p })
+        is_near(a.into(), b.into(), p.into())
     }
 
     #[test]
@@ -157,10 +162,9 @@ mod tests {
             let mut found = Vec::new();
             tree.for_each_near(a, b, |_, i| found.push(i));
             found.sort_unstable();
-            let segment = Segment::new(a, b);
             let expected: Vec<u32> = points
                 .iter()
-                .filter(|(p, _)| segment.is_near(&Aabb { min: *p, max: *p }))
+                .filter(|(p, _)| is_near(a, b, *p))
                 .map(|&(_, i)| i)
                 .collect();
             assert_eq!(found, expected);

@@ -16,7 +16,7 @@
 use antumbra_kernel::{Point, sub};
 
 use super::clean::Patch;
-use super::near::PointTree;
+use super::near::{PointTree, is_near};
 use super::plane::{Frame, collinear};
 
 /// What was closed.
@@ -30,6 +30,9 @@ pub(crate) struct Sealed {
 
 /// Appends the triangles that close the slits between the occluding patches of one object.
 pub(crate) fn seal(points: &[Point], patches: &mut Vec<Patch>) -> Sealed {
+    if points.len() <= FEW && !any_near(points, patches) {
+        return Sealed::default();
+    }
     let edges = occluding_edges(patches);
     if edges.is_empty() {
         return Sealed::default();
@@ -58,6 +61,23 @@ pub(crate) fn seal(points: &[Point], patches: &mut Vec<Patch>) -> Sealed {
     sealed.triangles = triangles.len();
     patches.append(&mut triangles);
     sealed
+}
+
+/// Objects with so few vertices are looked through before a tree is built: most are single
+/// rectangles, and need nothing.
+const FEW: usize = 8;
+
+/// Whether a vertex lies near an edge it is no end of.
+fn any_near(points: &[Point], patches: &[Patch]) -> bool {
+    patches.iter().any(|patch| {
+        let next = patch.corners.iter().cycle().skip(1);
+        patch.corners.iter().zip(next).any(|(&a, &b)| {
+            let (start, end) = (points[a as usize], points[b as usize]);
+            (0..points.len() as u32)
+                .filter(|&i| i != a && i != b)
+                .any(|i| is_near(start, end, points[i as usize]))
+        })
+    })
 }
 
 /// The edges of all occluding patches, smaller vertex first, each with its patch; sorted.

@@ -227,11 +227,21 @@ fn sweep(
     spans: impl Iterator<Item = (i32, i32)>,
 ) -> Option<Split> {
     let counts = Counts::new(n, spans);
-    counts
-        .boundaries()
-        .into_iter()
-        .filter_map(|at| cost(bounds, axis, at, n, counts.below(at), counts.above(at)))
-        .min()
+    let (mut below, mut ended, mut flat) = (0, 0, 0);
+    let mut best = None;
+    for at in counts.boundaries() {
+        let up_to = |list: &[i32], from: usize, limit: i32| {
+            from + list[from..].iter().take_while(|&&x| x <= limit).count()
+        };
+        // As `Counts::below` and `above` say, but walking along.
+        below = up_to(&counts.lows, below, at - 1);
+        ended = up_to(&counts.highs, ended, at);
+        let flats = up_to(&counts.flats, flat, at - 1);
+        flat = up_to(&counts.flats, flats, at);
+        let split = cost(bounds, axis, at, n, below + flat - flats, n - ended);
+        best = [best, split].into_iter().flatten().min();
+    }
+    best
 }
 
 /// The best of some boundaries: for each border of two bins the last end before it and the first
@@ -337,8 +347,23 @@ impl Counts {
 
     /// All ends of extents, each once, ascending.
     fn boundaries(&self) -> Vec<i32> {
-        let mut all = [self.lows.as_slice(), self.highs.as_slice()].concat();
-        all.sort_unstable();
+        let (mut lows, mut highs) = (self.lows.as_slice(), self.highs.as_slice());
+        let mut all = Vec::with_capacity(lows.len() + highs.len());
+        // A polygon begins before it ends, so the lows are exhausted first.
+        while let [low, later @ ..] = lows {
+            let next = match highs {
+                [high, later @ ..] if high < low => {
+                    highs = later;
+                    *high
+                }
+                _ => {
+                    lows = later;
+                    *low
+                }
+            };
+            all.push(next);
+        }
+        all.extend_from_slice(highs);
         all.dedup();
         all
     }

@@ -13,8 +13,10 @@ use crate::line::lies_in;
 use crate::proof::{GateProof, Reason};
 use crate::search::{Answer, Question};
 
+/// Rays at a box before a proof is tried.
+const PROBES: usize = 24;
 /// Splits that a box may cost before its children are asked instead.
-const BOX_BUDGET: u64 = 1500;
+const BOX_BUDGET: u64 = 6000;
 
 pub(super) enum Boxed {
     Hidden(Reason),
@@ -33,7 +35,7 @@ impl CellBake<'_> {
         if let Some(reason) = self.covered(&bounds.corners(), Behind::Strictly) {
             return Boxed::Hidden(reason);
         }
-        if let Some(answer) = self.probe_box(bounds) {
+        if let Some(answer) = self.probe_box(bounds, PROBES) {
             return answer;
         }
         let mut gates = Vec::new();
@@ -79,8 +81,7 @@ impl CellBake<'_> {
 
     /// A few rays at a box: most boxes that cannot be hidden show it at once, and a ray costs a
     /// hundredth of a split.
-    fn probe_box(&mut self, bounds: &Aabb) -> Option<Boxed> {
-        const PROBES: usize = 24;
+    pub(super) fn probe_box(&mut self, bounds: &Aabb, probes: usize) -> Option<Boxed> {
         let caster = &self.baker.caster;
         let absent = self.source.absent.clone();
         let (lo, hi) = (bounds.min.to_f64(), bounds.max.to_f64());
@@ -88,7 +89,7 @@ impl CellBake<'_> {
         if n == 0 {
             return None;
         }
-        for i in 0..PROBES.max(2 * n) {
+        for i in 0..probes.max(2 * n) {
             let source = i % n;
             let (p, _) = random_ray(&self.source.gates[source].gate, &mut self.rng);
             let q: [f64; 3] = std::array::from_fn(|k| lo[k] + self.rng.unit() * (hi[k] - lo[k]));
@@ -106,7 +107,8 @@ impl CellBake<'_> {
                 .filter(|&k| d[k] != 0.0)
                 .map(|k| ((lo[k] - p[k]) / d[k]).min((hi[k] - p[k]) / d[k]))
                 .fold(0.0, f64::max);
-            let hit = caster.first_hit(&segment, (0.0, enter), |id| {
+            // What lies in the box's own front does not stand before it.
+            let hit = caster.first_hit(&segment, (0.0, enter * (1.0 - 1e-9)), |id| {
                 caster.occludes(id) && !absent.contains(&id.0)
             });
             if hit.is_none() {

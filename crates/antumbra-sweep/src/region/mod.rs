@@ -6,6 +6,8 @@
 //! by claims that the checker verifies.
 
 mod boxes;
+mod explore;
+mod live;
 mod rays;
 mod source;
 
@@ -26,8 +28,9 @@ use crate::pair::{PairResult, Surface, Verdict};
 use crate::proof::{CellProof, Claim, GateProof, Reason, Target};
 use crate::random::Random;
 use crate::search::{Answer, Question, Searcher, Undecided};
-use crate::verdict::{Accuracy, CellResult, VisibleEntry};
+use crate::verdict::{Accuracy, CellResult, VisibleEntry, Witness};
 use boxes::Boxed;
+use live::{Beyond, Live, State};
 use source::Source;
 
 /// Options of a bake.
@@ -62,15 +65,22 @@ impl Default for BakeOptions {
 pub struct Baker<'a> {
     caster: Caster<'a>,
     targets: TargetTree,
+    /// Objects without polygons.
+    empty: Vec<ObjectId>,
 }
 
 impl<'a> Baker<'a> {
     /// Prepares a scene; `n log n`.
     #[must_use]
     pub fn new(scene: &'a antumbra_scene::Scene) -> Self {
+        let objects = scene.objects().iter().enumerate();
         Self {
             caster: Caster::new(scene),
             targets: TargetTree::new(scene),
+            empty: objects
+                .filter(|(_, o)| o.polygons.is_empty())
+                .map(|(i, _)| ObjectId(i as u32))
+                .collect(),
         }
     }
 
@@ -94,6 +104,8 @@ impl<'a> Baker<'a> {
         bake.find_touching();
         bake.cast_rays();
         if let Some(root) = self.targets.root() {
+            bake.fresh.clear();
+            bake.explore(root);
             bake.prove_group(root);
         }
         bake.finish()
@@ -115,14 +127,10 @@ impl Baker<'_> {
         };
         let source = Source::of_polygons(scene, from);
         let mut bake = CellBake::new(self, source, "pair", options);
-        for (i, state) in bake.states.iter_mut().enumerate() {
-            *state = if i == object.index() {
-                State::Undecided
-            } else {
-                State::Absent
-            };
-        }
+        bake.live = Live::only(&self.targets, scene.objects().len(), object);
+        bake.aim_at(to.polygons(scene), PAIR_RAYS);
         let root = match to {
+            _ if !bake.undecided(object) => None,
             Surface::Polygon(id) => {
                 let part = bake.prove_polygon(id);
                 bake.settle(object, part);
@@ -134,7 +142,7 @@ impl Baker<'_> {
             bake.prove_object(root, object);
         }
         let fully = bake.searcher.work.splits == 0 && bake.fully_visible(to);
-        let state = bake.states[object.index()];
+        let state = bake.live.state(object);
         let result = bake.finish();
         let verdict = match (state, result.visible.first().and_then(|e| e.witness)) {
             (State::Visible, Some(witness)) => Verdict::Visible { witness, fully },
@@ -150,47 +158,34 @@ impl Baker<'_> {
     }
 }
 
-/// What is known of an object so far.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum State {
-    Undecided,
-    Visible,
-    Hidden,
-    Unknown,
-    /// The source itself, or an object without polygons.
-    Absent,
-}
-
 pub(crate) struct CellBake<'a> {
     baker: &'a Baker<'a>,
     options: &'a BakeOptions,
     source: Source,
-    states: Vec<State>,
+    live: Live<'a>,
     entries: BTreeMap<ObjectId, VisibleEntry>,
     accuracy: Accuracy,
     proof: CellProof,
     searcher: Searcher,
     rng: Random,
+    /// Witnesses whose surroundings have not been looked at.
+    fresh: Vec<Witness>,
 }
 
+/// Rays at the target of a pair before a proof is tried; a ray costs a hundredth of one.
+const PAIR_RAYS: usize = 96;
 /// Free lines into a box that may be followed before its children are asked.
-const BOX_TRIES: usize = 6;
+pub(super) const BOX_TRIES: usize = 6;
 
 impl<'a> CellBake<'a> {
     fn new(baker: &'a Baker<'a>, source: Source, name: &str, options: &'a BakeOptions) -> Self {
-        let states = baker
-            .scene()
-            .objects()
-            .iter()
-            .map(|o| {
-                let absent = o.polygons.is_empty() || o.polygons == source.absent;
-                if absent {
-                    State::Absent
-                } else {
-                    State::Undecided
-                }
-            })
-            .collect();
+        let objects = baker.scene().objects();
+        let empty = baker.empty.iter().copied();
+        let own = source.absent.clone().next().and_then(|p| {
+            let id = baker.scene().polygon(PolygonId(p)).object;
+            (objects[id.index()].polygons == source.absent).then_some(id)
+        });
+        let live = Live::new(&baker.targets, objects.len(), empty.chain(own));
         // The name is part of the seed, so that a cell's result does not depend on its neighbors.
         let name_seed = name.bytes().fold(0_u64, |h, b| {
             (h ^ u64::from(b)).wrapping_mul(0x100_0000_01b3)
@@ -199,7 +194,7 @@ impl<'a> CellBake<'a> {
             baker,
             options,
             source,
-            states,
+            live,
             entries: BTreeMap::new(),
             accuracy: options
                 .ignore_below
@@ -207,11 +202,12 @@ impl<'a> CellBake<'a> {
             proof: CellProof::default(),
             searcher: Searcher::new(),
             rng: Random::new(options.seed ^ name_seed),
+            fresh: Vec::new(),
         }
     }
 
     pub(super) fn undecided(&self, id: ObjectId) -> bool {
-        self.states[id.index()] == State::Undecided
+        self.live.undecided(id)
     }
 
     pub(super) fn cancelled(&self) -> bool {
@@ -248,7 +244,7 @@ impl<'a> CellBake<'a> {
             }
         });
         for object in touching {
-            self.states[object.index()] = State::Visible;
+            self.live.set(object, State::Visible);
             self.entries.insert(
                 object,
                 VisibleEntry {
@@ -273,19 +269,20 @@ impl<'a> CellBake<'a> {
             if self.cancelled() {
                 return;
             }
-            let Some(bounds) = self.live_bounds(index) else {
+            let Some(bounds) = self.live.bounds(index) else {
                 return;
             };
             match self.hide_box(&bounds) {
                 Boxed::Hidden(reason) => {
                     self.claim(Target::Box(bounds), reason);
-                    self.hide_all(index);
+                    self.live.hide(index);
                     return;
                 }
-                Boxed::Seen => {}
+                Boxed::Seen => self.look_around(),
                 Boxed::Open => break,
             }
         }
+        self.prove_beyond(index);
         if let TargetKind::Inner(a, b) = node.kind {
             let (a, b) = if self.distance(a) <= self.distance(b) {
                 (a, b)
@@ -297,42 +294,64 @@ impl<'a> CellBake<'a> {
         }
     }
 
+    /// Tries to hide at once what lies farther from the source, along an axis, than everything
+    /// visible below a node: a hierarchy cut by areas alone holds the near and the far together.
+    fn prove_beyond(&mut self, index: u32) {
+        for (axis, positive) in (0..6).map(|i| (i / 2, i % 2 == 0)) {
+            for _ in 0..BOX_TRIES {
+                let Some((bounds, beyond)) = self.beyond(index, axis, positive) else {
+                    break;
+                };
+                match self.hide_box(&bounds) {
+                    Boxed::Hidden(reason) => {
+                        self.claim(Target::Box(bounds), reason);
+                        self.live.hide_beyond(index, &beyond);
+                        break;
+                    }
+                    Boxed::Seen => self.look_around(),
+                    Boxed::Open => break,
+                }
+            }
+        }
+    }
+
+    /// The box around what is undecided below a node and lies beyond the source and everything
+    /// visible below the node; `None` if that is little.
+    fn beyond(&self, index: u32, axis: usize, positive: bool) -> Option<(Aabb, Beyond)> {
+        const FEW: u32 = 3;
+        let mut beyond = Beyond {
+            axis,
+            positive,
+            bound: 0,
+        };
+        beyond.bound = beyond.span(&self.source.bounds).1;
+        let left = self.live.left(index);
+        if left < 2 * FEW || beyond.span(&self.live.bounds(index)?).0 <= beyond.bound {
+            return None;
+        }
+        let places = self.baker.targets.node(index).places();
+        for &object in self.entries.keys() {
+            if places.contains(&self.baker.targets.place(object))
+                && let Some(root) = self.baker.targets.object_root(object)
+            {
+                let near = beyond.span(&self.baker.targets.node(root).bounds).0;
+                beyond.bound = beyond.bound.max(near);
+            }
+        }
+        let (bounds, count) = self.live.bounds_beyond(index, &beyond);
+        (count >= FEW.max(left / 8) && count < left)
+            .then_some(bounds)
+            .flatten()
+            .map(|b| (b, beyond))
+    }
+
     fn claim(&mut self, target: Target, reason: Reason) {
         if self.options.proofs {
             self.proof.claims.push(Claim { target, reason });
         }
     }
 
-    /// The box around everything undecided below a node.
-    fn live_bounds(&self, index: u32) -> Option<Aabb> {
-        let node = self.baker.targets.node(index);
-        match (node.object, node.kind) {
-            (Some(object), _) => self.undecided(object).then_some(node.bounds),
-            (None, TargetKind::Inner(a, b)) => match (self.live_bounds(a), self.live_bounds(b)) {
-                (Some(a), Some(b)) => Some(a.union(b)),
-                (a, b) => a.or(b),
-            },
-            (None, TargetKind::Polygon(_)) => None,
-        }
-    }
-
-    fn hide_all(&mut self, index: u32) {
-        let node = *self.baker.targets.node(index);
-        match (node.object, node.kind) {
-            (Some(object), _) => {
-                if self.undecided(object) {
-                    self.states[object.index()] = State::Hidden;
-                }
-            }
-            (None, TargetKind::Inner(a, b)) => {
-                self.hide_all(a);
-                self.hide_all(b);
-            }
-            (None, TargetKind::Polygon(_)) => {}
-        }
-    }
-
-    fn distance(&self, index: u32) -> i64 {
+    pub(super) fn distance(&self, index: u32) -> i64 {
         let (a, b) = (&self.source.bounds, &self.baker.targets.node(index).bounds);
         let (alo, ahi, blo, bhi) = (
             a.min.to_i64(),
@@ -360,11 +379,12 @@ impl<'a> CellBake<'a> {
     }
 
     fn settle(&mut self, object: ObjectId, part: Part) {
-        self.states[object.index()] = match part {
+        let state = match part {
             Part::Hidden => State::Hidden,
             Part::Visible => State::Visible,
             Part::Unknown => State::Unknown,
         };
+        self.live.set(object, state);
     }
 
     /// Whether no occluder stands between the source and a target at all: by boxes, so that *no*
@@ -486,15 +506,9 @@ impl<'a> CellBake<'a> {
     }
 
     fn finish(self) -> CellResult {
-        let mut unknown = Vec::new();
-        for (i, state) in self.states.iter().enumerate() {
-            if matches!(state, State::Undecided | State::Unknown) {
-                unknown.push(ObjectId(i as u32));
-            }
-        }
         CellResult {
             visible: self.entries.into_values().collect(),
-            unknown,
+            unknown: self.live.open(),
             accuracy: self.accuracy,
             proof: if self.options.proofs {
                 self.proof.to_bytes()

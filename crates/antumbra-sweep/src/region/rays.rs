@@ -2,8 +2,9 @@
 
 use antumbra_scene::PolygonId;
 
+use super::CellBake;
+use super::live::State;
 use super::source::{area, random_ray};
-use super::{CellBake, State};
 use crate::caster::Segment;
 use crate::line::{Between, FineLine, Meeting, obstacle};
 use crate::verdict::FinePoint;
@@ -99,7 +100,8 @@ impl CellBake<'_> {
             polygon: id,
             source: number,
         };
-        self.states[object.index()] = State::Visible;
+        self.live.set(object, State::Visible);
+        self.fresh.push(witness);
         self.entries.insert(
             object,
             VisibleEntry {

@@ -125,7 +125,7 @@ impl MapArgs {
 pub(crate) fn run(args: &MapArgs, global: &Global) -> Result<(), Failure> {
     let (options, view) = (args.options()?, args.view()?);
     for path in [&args.svg, &args.dxf, &args.output].into_iter().flatten() {
-        check_writable(path)?;
+        check_writable(path, &[args.scene.scene.as_path()])?;
     }
     let eye = args.eye.0;
     let hull = (!args.ortho).then_some((eye, eye));

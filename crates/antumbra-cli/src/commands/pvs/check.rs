@@ -13,7 +13,6 @@ use serde_json::json;
 
 use super::{open, pvs_failure};
 use crate::cli::Global;
-use crate::commands::bake::thread_pool;
 use crate::failure::Failure;
 use crate::load;
 use crate::output::{Output, seconds};
@@ -35,7 +34,7 @@ pub(crate) fn run(args: &CheckArgs, global: &Global) -> Result<(), Failure> {
     let file = open(&args.file)?;
     let proofs = open_proofs(&args.file, &file)?;
     let scene = scene_of(&file, &args.scene)?;
-    let checked = check(&file, &proofs, &scene, global.threads, global.output())?;
+    let checked = check(&file, &proofs, &scene, global.output())?;
     let failed = checked.report.failed.len();
     let result = json!({
         "visible_checked": checked.report.visible_checked,
@@ -115,10 +114,8 @@ pub(crate) fn check(
     file: &PvsFile,
     proofs: &ProofFile,
     scene: &Scene,
-    threads: Option<u16>,
     output: Output,
 ) -> Result<Checked, Failure> {
-    let pool = thread_pool(threads)?;
     let bar = output.progress(file.cell_count() as u64, "cells checked");
     let start = Instant::now();
     let one = |index: CellIndex| -> Result<CheckReport, Failure> {
@@ -149,7 +146,7 @@ pub(crate) fn check(
     };
     let indices: Vec<CellIndex> = file.cells().collect();
     let reports: Result<Vec<CheckReport>, Failure> =
-        pool.install(|| indices.into_par_iter().with_max_len(1).map(one).collect());
+        indices.into_par_iter().with_max_len(1).map(one).collect();
     bar.finish_and_clear();
     let mut report = CheckReport::default();
     for part in reports? {

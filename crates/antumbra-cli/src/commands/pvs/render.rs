@@ -60,7 +60,7 @@ pub(crate) fn run(args: &RenderArgs, global: &Global) -> Result<(), Failure> {
             args.output.display()
         )));
     }
-    check_writable(&args.output)?;
+    check_writable(&args.output, &[&args.file, &args.scene])?;
     let file = open(&args.file)?;
     let (index, cell) = cell(&file, &args.cell)?;
     let scene = scene_of(&file, &args.scene)?;
