@@ -133,7 +133,7 @@ fn first_hits_agree_beside_every_edge_and_vertex() {
     let mut checked = 0;
     for seed in 0..rounds() {
         let mut random = Random::new(seed);
-        let count = 2 + random.index(9) as usize;
+        let count = 2 + random.index(9);
         let scene = scene(&mut random, count);
         let eye: [f64; 3] = std::array::from_fn(|_| random.index(11) as f64 - 5.0);
         let mapper = Mapper::new(&scene);
@@ -152,7 +152,7 @@ fn first_hits_agree_beside_every_edge_and_vertex() {
 fn dissolved_maps_do_not_depend_on_the_order_of_insertion() {
     for seed in 0..rounds() {
         let mut random = Random::new(1000 + seed);
-        let count = 2 + random.index(9) as usize;
+        let count = 2 + random.index(9);
         let scene = scene(&mut random, count);
         let eye: [f64; 3] = std::array::from_fn(|_| random.index(11) as f64 - 5.0);
         let mapper = Mapper::new(&scene);
