@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::commands::{bake, completions, demo, r#gen, man, pair, pvs, ray};
+use crate::commands::{bake, completions, demo, r#gen, man, map, pair, pvs, ray};
 use crate::output::Output;
 use crate::values::positive;
 
@@ -22,6 +22,7 @@ Examples:
   antumbra bake house.glb --cells grid:2 -o house.pvs
   antumbra pvs query house.pvs --at 3.5,-2,1.6
   antumbra pair house.glb --from lamp --to table
+  antumbra map house.glb --eye -12,-9,6 --to 4,3,2 --svg house.svg
 
 Exit codes: 0 done; 2 wrong usage; 3 damaged or impossible content; 4 a path that cannot be
 read or written; 5 stopped, with what was finished saved.";
@@ -75,6 +76,8 @@ pub(crate) enum Command {
     Pair(pair::PairArgs),
     /// Follow a line: first hit and free stretches, exactly
     Ray(ray::RayArgs),
+    /// Draw what is seen from a point: hidden-line drawings, solid angles, the visibility map
+    Map(map::MapArgs),
     /// Make a synthetic scene
     Gen(r#gen::GenArgs),
     /// Bake, check and draw a small office that is built in

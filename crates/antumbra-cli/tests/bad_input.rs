@@ -43,6 +43,7 @@ fn scenes_that_cannot_be_read() {
             format!("bake {scene} -o out.pvs"),
             format!("pair {scene} --from 0 --to 1"),
             format!("ray {scene} --from 0,0,0 --to 1,1,1"),
+            format!("map {scene} --eye 0,0,9 -o out.json"),
         ] {
             let run = folder.run(&line);
             let text = run.failure(code);

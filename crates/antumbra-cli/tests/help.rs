@@ -4,7 +4,7 @@ mod tool;
 
 use tool::{Folder, assert_snapshot};
 
-const COMMANDS: [&str; 18] = [
+const COMMANDS: [&str; 19] = [
     "",
     "bake",
     "pvs",
@@ -16,6 +16,7 @@ const COMMANDS: [&str; 18] = [
     "pvs render",
     "pair",
     "ray",
+    "map",
     "gen",
     "gen random-triangles",
     "gen walls",
@@ -85,6 +86,12 @@ fn wrong_usage_is_one_sentence() {
         ("pvs query a.pvs --at 1,2", "three numbers"),
         ("pair a.glb --from 1", "--to"),
         ("ray a.glb --from 1,2,3 --to 1,2,inf", "three numbers"),
+        ("map a.glb", "--eye"),
+        ("map a.glb --eye 0,0,0 --svg a.svg", "--to"),
+        ("map a.glb --eye 0,0,0 --to 0,0,0", "no direction"),
+        ("map a.glb --eye 0,0,0 --to 0,0,5", "up direction"),
+        ("map a.glb --eye 0,0,0 --to 1,0,0 --fov 180", "180 degrees"),
+        ("map a.glb --eye 0,0,0 --crease 181", "--crease"),
         ("gen walls", "-o FILE.glb"),
         ("gen walls -o walls.stl", ".glb or .obj"),
         ("gen maze --rooms 0 -o m.glb", "0 is not in 1..=500"),

@@ -7,6 +7,7 @@
 //! | `obj` | Wavefront OBJ | [`write_obj`] |
 //! | `ply`, `stl` | PLY and STL, text and binary | |
 //! | `gzip` | any of these, compressed | |
+//! | `drawing` | | SVG and DXF of lines: [`drawing`] |
 //! | `pvs` | [`PvsFile`], [`ProofFile`] | [`PvsWriter`], and JSON by [`export`] |
 //!
 //! Readers take bytes and hand over a [`SceneInput`](antumbra_scene::SceneInput): float
@@ -44,6 +45,8 @@ mod stl;
 
 #[cfg(feature = "pvs")]
 pub mod compare;
+#[cfg(feature = "drawing")]
+pub mod drawing;
 #[cfg(feature = "pvs")]
 pub mod export;
 #[cfg(feature = "pvs")]

@@ -6,6 +6,7 @@ mod check;
 mod cover;
 mod gates;
 mod line;
+pub mod occlusion;
 mod pair;
 mod point;
 mod proof;

@@ -2,8 +2,10 @@
 //! every answer.
 //!
 //! The scene is snapped once to an integer grid; everything after is exact. See [`region`] for
-//! potentially visible sets, [`pair`] for two polygons, objects or points, [`ray`](mod@ray) for one line.
+//! potentially visible sets, [`pair`] for two polygons, objects or points, [`ray`](mod@ray) for one
+//! line, [`map`] for everything seen from a point.
 
+pub mod map;
 pub mod pair;
 pub mod ray;
 pub mod region;

@@ -5,6 +5,7 @@ pub(crate) mod completions;
 pub(crate) mod demo;
 pub(crate) mod r#gen;
 pub(crate) mod man;
+pub(crate) mod map;
 pub(crate) mod pair;
 pub(crate) mod pvs;
 pub(crate) mod ray;
@@ -21,6 +22,7 @@ pub(crate) fn run(cli: Cli) -> Result<(), Failure> {
         Command::Pvs(command) => pvs::run(&command, &global),
         Command::Pair(args) => pair::run(&args, &global),
         Command::Ray(args) => ray::run(&args, &global),
+        Command::Map(args) => map::run(&args, &global),
         Command::Gen(args) => r#gen::run(&args, &global),
         Command::Demo(args) => demo::run(&args, &global),
         Command::Completions(args) => completions::run(&args),

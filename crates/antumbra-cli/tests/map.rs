@@ -1,0 +1,117 @@
+//! Maps and drawings from the command line.
+
+mod tool;
+
+use serde_json::Value;
+use tool::Folder;
+
+/// A furnished office.
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder
+        .run("gen office --kind office2 -o office.glb --json")
+        .done();
+    folder
+}
+
+fn sum(angles: &Value) -> f64 {
+    let object = angles.as_object().expect("an object");
+    object.values().map(|v| v.as_f64().expect("a number")).sum()
+}
+
+#[test]
+fn a_sphere_is_shared_out_among_the_objects() {
+    let folder = folder();
+    let map = folder.run("map office.glb --eye 2,2,1.5 --json").json();
+    for key in ["vertices", "edges", "faces", "visible_polygons"] {
+        assert!(map[key].as_u64().is_some_and(|n| n > 0), "{key}");
+    }
+    assert_eq!(map["edges_by_class"]["bsp"], 0);
+    let background = map["background"].as_f64().expect("a number");
+    let sphere = sum(&map["solid_angle_by_object"]) + background;
+    assert!(
+        (sphere - 4.0 * std::f64::consts::PI).abs() < 1e-9,
+        "{sphere}"
+    );
+}
+
+#[test]
+fn drawings_have_layers_elements_and_no_empty_paths() {
+    let folder = folder();
+    let line = "map office.glb --eye -9,-8,7 --to 4,3,1 --svg a.svg --dxf a.dxf -o a.json --hidden";
+    folder.run(line).done();
+    let svg = String::from_utf8(folder.bytes("a.svg")).expect("text");
+    for layer in ["hidden", "corner", "shadow", "silhouette"] {
+        assert!(
+            svg.contains(&format!("<g id=\"{layer}\" class=\"layer\">")),
+            "{layer}"
+        );
+    }
+    let paths: Vec<&str> = svg.lines().filter(|l| l.starts_with("<path")).collect();
+    assert!(paths.len() > 20);
+    for path in &paths {
+        assert!(path.contains(" data-object=\""), "{path}");
+        let d = path.split(" d=\"").nth(1).expect("a path");
+        let points: Vec<&str> = d.trim_end_matches("\"/>").split(['M', 'L', 'Z']).collect();
+        let points: Vec<&str> = points
+            .iter()
+            .map(|p| p.trim())
+            .filter(|p| !p.is_empty())
+            .collect();
+        assert!(
+            points.len() > 1 && points.windows(2).all(|w| w[0] != w[1]),
+            "{path}"
+        );
+    }
+    let dxf = String::from_utf8(folder.bytes("a.dxf")).expect("text");
+    assert_eq!(dxf.matches("POLYLINE\n").count(), paths.len());
+    let json: Value = serde_json::from_slice(&folder.bytes("a.json")).expect("json");
+    let edges = json["edges"].as_array().expect("edges");
+    for face in json["faces"].as_array().expect("faces") {
+        for border in face["borders"].as_array().expect("borders") {
+            for half in border.as_array().expect("half-edges") {
+                assert!((half.as_u64().expect("a number") / 2) < edges.len() as u64);
+            }
+        }
+    }
+    // The same bytes again, with another number of threads.
+    let again = line.replace("a.svg", "b.svg").replace("a.json", "b.json") + " --threads 2";
+    folder.run(&again).done();
+    assert_eq!(folder.bytes("a.svg"), folder.bytes("b.svg"));
+    assert_eq!(folder.bytes("a.json"), folder.bytes("b.json"));
+}
+
+#[test]
+fn a_parallel_view_has_areas() {
+    let folder = folder();
+    let map = folder
+        .run("map office.glb --eye 0,0,9 --to 0,0,0 --up-is 0,1,0 --ortho --json --svg top.svg")
+        .json();
+    assert!(sum(&map["area_by_object"]) > 1.0);
+    assert!(map["solid_angle_by_object"].is_null());
+    assert!(!folder.bytes("top.svg").is_empty());
+}
+
+#[test]
+fn odd_viewpoints_are_answered() {
+    let folder = Folder::new();
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+    folder.write("square.obj", square);
+    // Behind everything.
+    let map = folder
+        .run("map square.obj --eye 3,3,3 --to 9,9,9 --json")
+        .json();
+    assert_eq!(map["visible_polygons"], 0);
+    assert_eq!(map["faces"], 2);
+    // On the polygon.
+    let run = folder.run("map square.obj --eye 0.5,0.5,0 --json");
+    assert!(run.stderr.contains("seen edge-on"), "{run:?}");
+    let map = run.json();
+    assert_eq!(
+        (&map["edges"], &map["faces"]),
+        (&Value::from(0), &Value::from(1))
+    );
+    // Off the grid.
+    let far = folder.run("map square.obj --eye 1e9,0,3 --grid 0.01");
+    assert!(far.failure(3).contains("grid"), "{far:?}");
+}

@@ -1,0 +1,178 @@
+//! Which of two planar occluders comes first along a ray of R^3.
+//!
+//! The plane of an occluder gives a row L and a scale D > 0 such that `L . r / D` is larger the nearer
+//! the occluder is along r: for a viewpoint e and a plane n . p = n . c it is n and n . (c - e), both
+//! negated if need be, since the ray meets the plane at t = D / (L . r). So one is in front of another
+//! where `D_old L_new - D_new L_old` is positive, and this row is the hyperplane through the viewpoint
+//! and their common line.
+//!
+//! Floats filter: both products `L . r` err by less than 2^-50 of their sums of magnitudes (see the
+//! module above), the scales and the two products with them by 2^-52 each more, the difference by
+//! 2^-53: 2^-48 of the weighted sums of magnitudes is on the safe side.
+
+use antumbra_kernel::{I256, Int, Sign};
+
+use super::exact::{ExactRay, Row, sign};
+use super::{Cone3, Plane3, Ray3, Space3};
+use crate::line_space::{DepthSpace, Half, Occluder, Order};
+
+/// How near an occluder's plane is along rays: `row . r / scale`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Nearness {
+    /// The row; not zero.
+    pub row: [i128; 3],
+    /// The scale, larger than zero.
+    pub scale: i128,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry {
+    row: [f64; 3],
+    scale: f64,
+    exact: Nearness,
+    key: u32,
+}
+
+/// 2^-48, see the proof above.
+const FILTER: f64 = 1.0 / (1_u64 << 48) as f64;
+
+impl Space3 {
+    /// Adds an occluder by its plane. Of two in one plane the smaller key is in front.
+    ///
+    /// For any two, the products of the scale of one and the row of the other must be smaller than
+    /// 2^159 in magnitude.
+    pub fn occluder(&mut self, nearness: Nearness, key: u32) -> Occluder {
+        debug_assert!(nearness.scale > 0);
+        self.occluders.push(Entry {
+            row: nearness.row.map(|c| c as f64),
+            scale: nearness.scale as f64,
+            exact: nearness,
+            key,
+        });
+        Occluder(self.occluders.len() as u32 - 1)
+    }
+
+    /// The key of an occluder.
+    ///
+    /// # Panics
+    /// If there is no such occluder.
+    #[must_use]
+    pub fn key(&self, occluder: Occluder) -> u32 {
+        self.occluders[occluder.0 as usize].key
+    }
+
+    /// The sign of how much nearer `a` is than `b` along a ray: zero where their planes meet.
+    /// Exact, degree 9 at a meet of two edges.
+    ///
+    /// # Panics
+    /// If there is no such occluder.
+    #[must_use]
+    pub fn nearer(&self, a: Occluder, b: Occluder, ray: &Ray3) -> Sign {
+        let (a, b) = (&self.occluders[a.0 as usize], &self.occluders[b.0 as usize]);
+        filtered(a, b, &ray.rounded).unwrap_or_else(|| {
+            let row = Row::Wide(common_row(a, b));
+            sign(&row, &self.exact(ray))
+        })
+    }
+
+    /// The hyperplane of the common line of two occluders, positive where `a` is nearer.
+    ///
+    /// # Panics
+    /// If there is no such occluder.
+    pub fn common_plane(&mut self, a: Occluder, b: Occluder) -> Plane3 {
+        let row = common_row(&self.occluders[a.0 as usize], &self.occluders[b.0 as usize]);
+        self.wide_plane(row)
+    }
+
+    /// Where a ray meets the occluder's plane, as a multiple of the ray (viewpoints only). Rounded.
+    ///
+    /// # Panics
+    /// If there is no such occluder.
+    #[must_use]
+    pub fn distance(&self, occluder: Occluder, ray: [f64; 3]) -> f64 {
+        let entry = &self.occluders[occluder.0 as usize];
+        entry.scale / (0..3).map(|k| entry.row[k] * ray[k]).sum::<f64>()
+    }
+}
+
+#[inline]
+fn filtered(a: &Entry, b: &Entry, r: &[f64; 3]) -> Option<Sign> {
+    let p: [f64; 3] = std::array::from_fn(|k| a.row[k] * r[k]);
+    let q: [f64; 3] = std::array::from_fn(|k| b.row[k] * r[k]);
+    let value = b.scale * (p[0] + p[1] + p[2]) - a.scale * (q[0] + q[1] + q[2]);
+    let size = |t: [f64; 3]| t[0].abs() + t[1].abs() + t[2].abs();
+    let bound = (b.scale * size(p) + a.scale * size(q)) * FILTER;
+    if value > bound {
+        Some(Sign::Positive)
+    } else if value < -bound {
+        Some(Sign::Negative)
+    } else {
+        None
+    }
+}
+
+fn common_row(a: &Entry, b: &Entry) -> [I256; 3] {
+    std::array::from_fn(|k| {
+        I256::product_i128(b.exact.scale, a.exact.row[k])
+            - I256::product_i128(a.exact.scale, b.exact.row[k])
+    })
+}
+
+impl DepthSpace for Space3 {
+    fn order(&mut self, piece: &Cone3, new: Occluder, old: Occluder) -> Order<Plane3> {
+        let (a, b) = (
+            self.occluders[new.0 as usize],
+            self.occluders[old.0 as usize],
+        );
+        let mut common: Option<Row> = None;
+        let mut found = [false; 3];
+        for corner in &piece.corners {
+            let sign = filtered(&a, &b, &corner.ray.rounded).unwrap_or_else(|| {
+                self.exact_signs += 1;
+                let row = common.get_or_insert_with(|| Row::Wide(common_row(&a, &b)));
+                sign(row, &self.exact(&corner.ray))
+            });
+            found[(sign.to_i8() + 1) as usize] = true;
+        }
+        match found {
+            [true, _, true] => {
+                let row = common_row(&a, &b);
+                Order::Crossing(self.wide_plane(row), Half::Positive)
+            }
+            [true, _, false] => Order::Behind,
+            [false, _, true] => Order::InFront,
+            [false, _, false] if a.key < b.key => Order::InFront,
+            [false, _, false] => Order::Behind,
+        }
+    }
+}
+
+/// The greatest common divisor of a ray's components taken out: equal rays become equal integers.
+///
+/// Big integers do the work; for output and tests.
+#[must_use]
+pub fn primitive(ray: &ExactRay) -> [dashu_int::IBig; 3] {
+    use dashu_int::{IBig, ops::Gcd};
+    let big = ray.wide().map(|c| to_big(&c));
+    let common = big
+        .iter()
+        .filter(|c| **c != IBig::ZERO)
+        .cloned()
+        .reduce(|a, b| IBig::from(a.gcd(b)));
+    match common {
+        Some(g) => {
+            let g = if g < IBig::ZERO { -g } else { g };
+            big.map(|c| c / &g)
+        }
+        None => big,
+    }
+}
+
+fn to_big(v: &Int<6>) -> dashu_int::IBig {
+    let magnitude = if v.is_negative() { -*v } else { *v };
+    let limbs = magnitude.limbs().iter().rev();
+    let big = limbs.fold(dashu_int::IBig::ZERO, |sum, &limb| {
+        (sum << 64) + dashu_int::IBig::from(limb)
+    });
+    if v.is_negative() { -big } else { big }
+}

@@ -1,0 +1,181 @@
+//! The exact side of the cone in R^3: names become integers only where a float filter gave up.
+//!
+//! Widths (n bits: |v| < 2^(n-1)), each tested on extreme input below:
+//!
+//! | quantity | bound | type |
+//! |---|---|---|
+//! | given ray | 36 bits | `i64` |
+//! | row of two given rays, narrow | 63 bits | `i64` |
+//! | row of a common line, wide | 161 bits | `I256` |
+//! | ray of two narrow rows | 127 bits | `i128` |
+//! | ray where a row is wide | 323 bits | `Int<6>` |
+//! | narrow row . ray of narrow rows | 191 bits | `Int<3>` |
+//! | wide row . given ray | 198 bits | `I256` |
+//! | any row . any ray | 485 bits | `I512` |
+
+use antumbra_kernel::{I256, I512, Int, Sign};
+
+/// A row as integers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Row {
+    Narrow([i64; 3]),
+    Wide([I256; 3]),
+}
+
+/// A ray as integers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExactRay {
+    /// A ray that was given.
+    Given([i64; 3]),
+    /// Where two narrow hyperplanes meet.
+    Narrow([i128; 3]),
+    /// Where two hyperplanes meet of which one is wide.
+    Wide([Int<6>; 3]),
+}
+
+impl ExactRay {
+    /// The components in the common width.
+    #[must_use]
+    pub fn wide(&self) -> [Int<6>; 3] {
+        match self {
+            Self::Given(v) => v.map(Int::from_i64),
+            Self::Narrow(v) => v.map(Int::from_i128),
+            Self::Wide(v) => *v,
+        }
+    }
+
+    /// The components as doubles, each within a relative error of 2^-52. Filters and output.
+    #[must_use]
+    pub fn to_f64(&self) -> [f64; 3] {
+        match self {
+            Self::Given(v) => v.map(|c| c as f64),
+            Self::Narrow(v) => v.map(|c| c as f64),
+            Self::Wide(v) => v.map(|c| c.to_f64_scaled(0)),
+        }
+    }
+}
+
+impl Row {
+    pub(super) fn wide(&self) -> [I256; 3] {
+        match self {
+            Self::Narrow(v) => v.map(Int::from_i64),
+            Self::Wide(v) => *v,
+        }
+    }
+
+    pub(super) fn to_f64(self) -> [f64; 3] {
+        match self {
+            Self::Narrow(v) => v.map(|c| c as f64),
+            Self::Wide(v) => v.map(|c| c.to_f64_scaled(0)),
+        }
+    }
+}
+
+/// The ray `a x b`.
+#[inline]
+pub(super) fn meet(a: &Row, b: &Row) -> ExactRay {
+    if let (Row::Narrow(a), Row::Narrow(b)) = (a, b) {
+        let m = |i: usize, j: usize| {
+            i128::from(a[i]) * i128::from(b[j]) - i128::from(a[j]) * i128::from(b[i])
+        };
+        return ExactRay::Narrow([m(1, 2), m(2, 0), m(0, 1)]);
+    }
+    let a = a.wide().map(|c| c.resize::<6>());
+    let b = b.wide().map(|c| c.resize::<6>());
+    let m = |i: usize, j: usize| a[i].times(&b[j]) - a[j].times(&b[i]);
+    ExactRay::Wide([m(1, 2), m(2, 0), m(0, 1)])
+}
+
+/// The sign of `row . ray`.
+pub(super) fn sign(row: &Row, ray: &ExactRay) -> Sign {
+    match (row, ray) {
+        (Row::Narrow(r), ExactRay::Given(v)) => Sign::of(
+            (0..3)
+                .map(|k| i128::from(r[k]) * i128::from(v[k]))
+                .sum::<i128>(),
+        ),
+        (Row::Narrow(r), ExactRay::Narrow(v)) => {
+            let t = |k: usize| Int::<3>::from_i128(v[k]).times_i64(r[k]);
+            (t(0) + t(1) + t(2)).sign()
+        }
+        (Row::Wide(r), ExactRay::Given(v)) => {
+            let t = |k: usize| r[k].times_i64(v[k]);
+            (t(0) + t(1) + t(2)).sign()
+        }
+        _ => {
+            let r = row.wide().map(|c| c.resize::<8>());
+            let v = ray.wide().map(|c| c.resize::<8>());
+            let t = |k: usize| -> I512 { r[k].times(&v[k]) };
+            (t(0) + t(1) + t(2)).sign()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use antumbra_kernel::{I256, Int, Sign};
+    use dashu_int::IBig;
+
+    use super::{ExactRay, Row, meet, sign};
+
+    fn big<const N: usize>(v: &Int<N>) -> IBig {
+        let negative = v.is_negative();
+        let m = if negative { -*v } else { *v };
+        let mut out = IBig::ZERO;
+        for &l in m.limbs().iter().rev() {
+            out = (out << 64) + IBig::from(l);
+        }
+        if negative { -out } else { out }
+    }
+
+    fn big_dot(row: &Row, ray: &ExactRay) -> IBig {
+        let (r, v) = (row.wide(), ray.wide());
+        (0..3).map(|k| big(&r[k]) * big(&v[k])).sum()
+    }
+
+    fn big_cross(a: &Row, b: &Row) -> [IBig; 3] {
+        let (a, b) = (a.wide().map(|c| big(&c)), b.wide().map(|c| big(&c)));
+        let m = |i: usize, j: usize| &a[i] * &b[j] - &a[j] * &b[i];
+        [m(1, 2), m(2, 0), m(0, 1)]
+    }
+
+    /// Rows at the ends of their ranges, with every pattern of signs.
+    fn extreme() -> Vec<Row> {
+        let narrow = (1_i64 << 62) - 1;
+        let wide = I256::product_i128((1 << 80) - 1, 1 << 80);
+        let mut out = Vec::new();
+        for signs in 0..8_u32 {
+            let flip = |k: u32| signs >> k & 1 == 1;
+            let n = |k: u32, v: i64| if flip(k) { -v } else { v };
+            let w = |k: u32, v: I256| if flip(k) { -v } else { v };
+            out.push(Row::Narrow([n(0, narrow), n(1, narrow - 2), n(2, narrow)]));
+            out.push(Row::Narrow([n(0, 1), n(1, narrow), n(2, 3)]));
+            let less = wide - I256::from_i64(7);
+            out.push(Row::Wide([w(0, wide), w(1, less), w(2, wide)]));
+        }
+        out
+    }
+
+    #[test]
+    fn signs_agree_with_big_integers_at_the_ends_of_the_ranges() {
+        let rows = extreme();
+        let mut rays = vec![
+            ExactRay::Given([(1 << 35) - 1, -((1 << 35) - 1), (1 << 35) - 1]),
+            ExactRay::Given([1, 0, -1]),
+        ];
+        for a in &rows {
+            for b in &rows {
+                let ray = meet(a, b);
+                assert_eq!(ray.wide().map(|c| big(&c)), big_cross(a, b));
+                assert_eq!(sign(a, &ray), Sign::Zero);
+                rays.push(ray);
+            }
+        }
+        for row in &rows {
+            for ray in &rays {
+                let expected = big_dot(row, ray).cmp(&IBig::ZERO);
+                assert_eq!(sign(row, ray), Sign::of_ordering(expected));
+            }
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! The cells of a finished occlusion tree: every leaf with its convex cone, open ones too.
+//!
+//! After [Bittner02, 5.6]. Differs in taking all leaves, so that the cells cover the view without
+//! gaps: then the only thing left to do is to match the two sides of each wall.
+
+use antumbra_lines::{Corner3, Leaf, Ray3, Space3};
+use antumbra_sweep::occlusion::{Sweep, View};
+
+/// All cells; corners are numbered through.
+pub(super) struct Cells {
+    pub(super) corners: Vec<Corner3>,
+    /// `corners[first[i]..first[i + 1]]` belong to cell `i`.
+    pub(super) first: Vec<u32>,
+    pub(super) leaves: Vec<Leaf>,
+    /// The cell of each corner.
+    pub(super) owner: Vec<u32>,
+    /// Vertices that are no corners.
+    added: Vec<Ray3>,
+}
+
+impl Cells {
+    /// Cuts the roots of a view along the tree.
+    pub(super) fn of<V: View<Space = Space3>>(sweep: &mut Sweep<V>) -> Self {
+        let mut cells = Self {
+            corners: Vec::new(),
+            first: vec![0],
+            leaves: Vec::new(),
+            owner: Vec::new(),
+            added: Vec::new(),
+        };
+        for (slot, piece) in sweep.view.roots(&sweep.tree) {
+            let space = sweep.view.space();
+            sweep.tree.visit(space, slot, piece, |leaf, cone| {
+                let cell = cells.leaves.len() as u32;
+                cells.owner.extend(cone.corners.iter().map(|_| cell));
+                cells.corners.extend_from_slice(&cone.corners);
+                cells.first.push(cells.corners.len() as u32);
+                cells.leaves.push(leaf);
+            });
+        }
+        cells
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.leaves.len()
+    }
+
+    /// The numbers of a cell's corners.
+    pub(super) fn range(&self, cell: usize) -> std::ops::Range<u32> {
+        self.first[cell]..self.first[cell + 1]
+    }
+
+    /// The corner after another one, around its cell.
+    pub(super) fn next(&self, corner: u32) -> u32 {
+        let range = self.range(self.owner[corner as usize] as usize);
+        if corner + 1 == range.end {
+            range.start
+        } else {
+            corner + 1
+        }
+    }
+
+    pub(super) fn ray(&self, corner: u32) -> &Ray3 {
+        let given = self.corners.len();
+        match self.corners.get(corner as usize) {
+            Some(corner) => &corner.ray,
+            None => &self.added[corner as usize - given],
+        }
+    }
+
+    /// Adds a ray that is no corner of a cell; returns its number, after those of all corners.
+    pub(super) fn add_ray(&mut self, ray: Ray3) -> u32 {
+        self.added.push(ray);
+        (self.corners.len() + self.added.len() - 1) as u32
+    }
+
+    /// All corners by the wall of their facets, those on its negative side first.
+    pub(super) fn by_wall(&self) -> Vec<u32> {
+        let mut keys: Vec<(u64, u32)> = self
+            .corners
+            .iter()
+            .zip(0..)
+            .map(|(c, i)| (u64::from(c.wall.0) << 1 | c.side.index() as u64, i))
+            .collect();
+        keys.sort_unstable();
+        keys.into_iter().map(|(_, i)| i).collect()
+    }
+}

@@ -1,0 +1,5 @@
+//! Visibility maps against big integers, rays, and each other.
+
+mod oracle;
+mod real;
+mod small;
