@@ -14,10 +14,10 @@ use super::{BOX_TRIES, CellBake};
 use crate::caster::Segment;
 
 /// Rays at the box around an object, and at most at one around many.
-const PROBES: usize = 24;
+const PROBES: usize = 64;
 const MOST_PROBES: usize = 600;
 /// Rays at each object that a ray may reach.
-const AIMED: usize = 24;
+const AIMED: usize = 128;
 
 impl CellBake<'_> {
     /// Casts rays at what is undecided below a node; records what they see.
@@ -38,7 +38,7 @@ impl CellBake<'_> {
             if self.source.bounds.touches(&bounds) {
                 break;
             }
-            let probes = PROBES + 4 * self.live.left(index) as usize;
+            let probes = PROBES + 16 * self.live.left(index) as usize;
             match self.probe_box(&bounds, probes.min(MOST_PROBES)) {
                 None => return,
                 Some(Boxed::Seen) => self.look_around(),

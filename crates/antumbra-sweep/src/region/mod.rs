@@ -9,6 +9,7 @@ mod boxes;
 mod explore;
 mod live;
 mod rays;
+mod record;
 mod source;
 
 use std::collections::BTreeMap;
@@ -31,6 +32,7 @@ use crate::search::{Answer, Question, Searcher, Undecided};
 use crate::verdict::{Accuracy, CellResult, VisibleEntry, Witness};
 use boxes::Boxed;
 use live::{Beyond, Live, State};
+use record::Record;
 use source::Source;
 
 /// Options of a bake.
@@ -170,6 +172,9 @@ pub(crate) struct CellBake<'a> {
     rng: Random,
     /// Witnesses whose surroundings have not been looked at.
     fresh: Vec<Witness>,
+    /// Whether it pays to prove boxes, and what lies beyond everything visible.
+    boxes: Record,
+    beyonds: Record,
 }
 
 /// Rays at the target of a pair before a proof is tried; a ray costs a hundredth of one.
@@ -203,6 +208,8 @@ impl<'a> CellBake<'a> {
             searcher: Searcher::new(),
             rng: Random::new(options.seed ^ name_seed),
             fresh: Vec::new(),
+            boxes: Record::default(),
+            beyonds: Record::default(),
         }
     }
 
@@ -265,24 +272,18 @@ impl<'a> CellBake<'a> {
             self.prove_object(index, object);
             return;
         }
-        for _ in 0..BOX_TRIES {
-            if self.cancelled() {
+        if self.live.left(index) > 1 {
+            let class = self.live.left(index).ilog2() as usize;
+            if self.boxes.pay(class) && self.prove_box(index, class) {
                 return;
             }
-            let Some(bounds) = self.live.bounds(index) else {
-                return;
-            };
-            match self.hide_box(&bounds) {
-                Boxed::Hidden(reason) => {
-                    self.claim(Target::Box(bounds), reason);
-                    self.live.hide(index);
-                    return;
-                }
-                Boxed::Seen => self.look_around(),
-                Boxed::Open => break,
+            if self.beyonds.pay(class) {
+                self.prove_beyond(index, class);
             }
         }
-        self.prove_beyond(index);
+        if self.live.left(index) == 0 || self.cancelled() {
+            return;
+        }
         if let TargetKind::Inner(a, b) = node.kind {
             let (a, b) = if self.distance(a) <= self.distance(b) {
                 (a, b)
@@ -294,9 +295,30 @@ impl<'a> CellBake<'a> {
         }
     }
 
+    /// Tries to hide everything undecided below a node; whether that worked.
+    fn prove_box(&mut self, index: u32, class: usize) -> bool {
+        for _ in 0..BOX_TRIES {
+            let Some(bounds) = self.live.bounds(index).filter(|_| !self.cancelled()) else {
+                return true;
+            };
+            match self.hide_box(&bounds) {
+                Boxed::Hidden(reason) => {
+                    self.claim(Target::Box(bounds), reason);
+                    self.live.hide(index);
+                    self.boxes.note(class, true);
+                    return true;
+                }
+                Boxed::Seen => self.look_around(),
+                Boxed::Open => break,
+            }
+        }
+        self.boxes.note(class, false);
+        false
+    }
+
     /// Tries to hide at once what lies farther from the source, along an axis, than everything
     /// visible below a node: a hierarchy cut by areas alone holds the near and the far together.
-    fn prove_beyond(&mut self, index: u32) {
+    fn prove_beyond(&mut self, index: u32, class: usize) {
         for (axis, positive) in (0..6).map(|i| (i / 2, i % 2 == 0)) {
             for _ in 0..BOX_TRIES {
                 let Some((bounds, beyond)) = self.beyond(index, axis, positive) else {
@@ -306,10 +328,14 @@ impl<'a> CellBake<'a> {
                     Boxed::Hidden(reason) => {
                         self.claim(Target::Box(bounds), reason);
                         self.live.hide_beyond(index, &beyond);
+                        self.beyonds.note(class, true);
                         break;
                     }
                     Boxed::Seen => self.look_around(),
-                    Boxed::Open => break,
+                    Boxed::Open => {
+                        self.beyonds.note(class, false);
+                        break;
+                    }
                 }
             }
         }
