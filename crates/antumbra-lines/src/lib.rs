@@ -8,6 +8,7 @@
 mod cone;
 mod cone3;
 mod line_space;
+mod modular;
 mod quadric;
 mod space;
 mod start;

@@ -46,11 +46,7 @@ impl CellBake<'_> {
             }
         }
         if let TargetKind::Inner(a, b) = node.kind {
-            let (a, b) = if self.distance(a) <= self.distance(b) {
-                (a, b)
-            } else {
-                (b, a)
-            };
+            let (a, b) = self.nearer_first(a, b);
             self.explore(a);
             self.explore(b);
         }

@@ -285,11 +285,7 @@ impl<'a> CellBake<'a> {
             return;
         }
         if let TargetKind::Inner(a, b) = node.kind {
-            let (a, b) = if self.distance(a) <= self.distance(b) {
-                (a, b)
-            } else {
-                (b, a)
-            };
+            let (a, b) = self.nearer_first(a, b);
             self.prove_group(a);
             self.prove_group(b);
         }
@@ -377,7 +373,16 @@ impl<'a> CellBake<'a> {
         }
     }
 
-    pub(super) fn distance(&self, index: u32) -> i64 {
+    /// Two nodes, the one nearer to the source first.
+    fn nearer_first(&self, a: u32, b: u32) -> (u32, u32) {
+        if self.distance(a) <= self.distance(b) {
+            (a, b)
+        } else {
+            (b, a)
+        }
+    }
+
+    fn distance(&self, index: u32) -> i64 {
         let (a, b) = (&self.source.bounds, &self.baker.targets.node(index).bounds);
         let (alo, ahi, blo, bhi) = (
             a.min.to_i64(),
@@ -456,11 +461,7 @@ impl<'a> CellBake<'a> {
                         Boxed::Open => break,
                     }
                 }
-                let (a, b) = if self.distance(a) <= self.distance(b) {
-                    (a, b)
-                } else {
-                    (b, a)
-                };
+                let (a, b) = self.nearer_first(a, b);
                 match self.prove_part(a, object) {
                     Part::Visible => Part::Visible,
                     first => match self.prove_part(b, object) {
