@@ -1,6 +1,8 @@
 //! Cells of real buildings.
 
-use antumbra::region::{BakeOptions, Baker, check_cell};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use antumbra::region::{BakeOptions, Baker, CellResult, check_cell};
 use antumbra::scene::{CellSpec, SceneBuilder, ViewCell, make_cells};
 use antumbra_io::read_scene;
 use antumbra_testkit::environment::{data, skip};
@@ -43,6 +45,9 @@ pub(crate) fn cells(c: &mut Criterion) {
                     .sum::<usize>()
             });
         });
+        group.bench_function(format!("bake {} by two threads", some.len()), |b| {
+            b.iter(|| two_threads(&some, &bake));
+        });
         group.bench_function(format!("check {}", some.len()), |b| {
             b.iter(|| {
                 (0..some.len())
@@ -52,4 +57,18 @@ pub(crate) fn cells(c: &mut Criterion) {
         });
         group.finish();
     }
+}
+
+/// Bakes cells by two threads, each taking the next cell that is left.
+fn two_threads(cells: &[&ViewCell], bake: &(impl Fn(&ViewCell) -> CellResult + Sync)) {
+    let next = AtomicUsize::new(0);
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| {
+                while let Some(cell) = cells.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    std::hint::black_box(bake(cell));
+                }
+            });
+        }
+    });
 }

@@ -1,11 +1,12 @@
 //! How long answers take. Each benchmark confirms its answer before it is timed; scenes and
-//! kD-trees are built beforehand, one thread works.
+//! kD-trees are built beforehand (and timed on their own), one thread works unless two are named.
 //!
 //! Data that is not part of the project is looked for as the tests do, and skipped if absent.
 
 #![allow(missing_docs, reason = "the macro makes a public function")]
 
 mod buildings;
+mod maps;
 mod pairs;
 mod synthetic;
 
@@ -17,6 +18,7 @@ criterion_group! {
         .sample_size(10)
         .warm_up_time(std::time::Duration::from_millis(300))
         .measurement_time(std::time::Duration::from_secs(3));
-    targets = synthetic::layered, synthetic::triangles, pairs::all, buildings::cells
+    targets = synthetic::build, synthetic::layered, synthetic::triangles, pairs::all, buildings::cells,
+        maps::views
 }
 criterion_main!(engine);

@@ -20,6 +20,28 @@ fn bake(baker: &Baker<'_>, cell: &ViewCell) -> CellResult {
     result
 }
 
+/// The scene and the kD-tree of 1,000 walls: 400,000 quads.
+pub(crate) fn build(c: &mut Criterion) {
+    let input = layers(&LayerParams {
+        pattern: LayerPattern::Walls,
+        layers: 1000,
+        source_area: 2.0,
+    });
+    let mut group = c.benchmark_group("build");
+    group.bench_function("400000 quads", |b| {
+        b.iter_batched(
+            || input.clone(),
+            |input| {
+                let (scene, _) = SceneBuilder::new(input).build().expect("sound");
+                assert_eq!(scene.polygon_count(), 400_001);
+                scene
+            },
+            criterion::BatchSize::PerIteration,
+        );
+    });
+    group.finish();
+}
+
 /// Walls (S1-S3) and chessboards (S4-S6), and walls of many layers.
 pub(crate) fn layered(c: &mut Criterion) {
     let mut group = c.benchmark_group("layers");
