@@ -5,7 +5,7 @@
 //! of two lines, and the Plücker quadric is `Q = d . m`.
 //! A float filter with its proved bound decides most sides; exact integers decide the rest.
 
-use crate::{I256, I512, Point, Sign};
+use crate::{I256, I512, Int, Point, Sign};
 
 /// A hyperplane of line space through the origin, as integer coefficients `(m; d)`.
 ///
@@ -74,36 +74,82 @@ pub fn cofactors(rows: [&Row; 5]) -> [I256; 6] {
             d2[p][k] = a[3 + c] * b[3 + e] - a[3 + e] * b[3 + c];
         }
     }
-    let mut out = [I256::ZERO; 6];
-    for (p, &(i, j)) in PAIRS.iter().enumerate() {
-        let (t, tail, sign) = COMPLEMENTS[p];
+    // Two moments and three directions take at most 189 bits, large rows included; three moments
+    // and two directions 213.
+    let mut dropped_moment = [Int::<3>::ZERO; 3];
+    let mut dropped_direction = [I256::ZERO; 3];
+    for (p, &(t, tail, sign)) in COMPLEMENTS.iter().enumerate() {
         let first = rows[t];
-        let _ = (i, j);
-        // 3x3 minors of the complementary rows, expanded by their first row.
+        // 3x3 minors of the complementary rows, expanded by their first row, with the Laplace sign.
         let d3 = i128::from(first[3]) * i128::from(d2[tail][0])
             - i128::from(first[4]) * i128::from(d2[tail][1])
             + i128::from(first[5]) * i128::from(d2[tail][2]);
-        let m3 = I256::product_i128(i128::from(first[0]), m2[tail][0])
-            - I256::product_i128(i128::from(first[1]), m2[tail][1])
-            + I256::product_i128(i128::from(first[2]), m2[tail][2]);
+        let d3 = if sign > 0 { d3 } else { -d3 };
+        let m3 = Int::<3>::from_i128(m2[tail][0]).times_i64(first[0])
+            - Int::<3>::from_i128(m2[tail][1]).times_i64(first[1])
+            + Int::<3>::from_i128(m2[tail][2]).times_i64(first[2]);
+        let m3 = m3.resize::<4>();
         for k in 0..3 {
             // Dropping a moment column leaves the pair k of moments and all directions.
-            let a = I256::product_i128(m2[p][k], d3);
+            dropped_moment[k] = dropped_moment[k] + Int::<3>::product_i128(m2[p][k], d3);
             // Dropping a direction column leaves all moments and the pair k of directions.
-            let b = m3.times_i64(d2[p][k]);
-            if sign > 0 {
-                out[k] = out[k] + a;
-                out[3 + k] = out[3 + k] + b;
-            } else {
-                out[k] = out[k] - a;
-                out[3 + k] = out[3 + k] - b;
-            }
+            let d = if sign > 0 { d2[p][k] } else { -d2[p][k] };
+            dropped_direction[k] = dropped_direction[k] + m3.times_i64(d);
         }
     }
+    let [a, b, c] = dropped_moment.map(|v| v.resize::<4>());
+    let [d, e, f] = dropped_direction;
     // Column pairs (1,2), (0,2), (0,1) are left when columns 0, 1, 2 are dropped.
     // The cofactor of column j has the sign (-1)^j; moving the pair of moments in front of the
     // three directions costs nothing, moving three moments in front of a pair of directions neither.
-    [out[0], -out[1], out[2], -out[3], out[4], -out[5]]
+    [a, -b, c, -d, e, -f]
+}
+
+/// The cofactors in doubles, and bounds of their absolute errors.
+///
+/// The coefficients must be exact in doubles. Every term of a cofactor passes 18 roundings (five
+/// in a 3x3 minor, two in a 2x2 minor, one in their product, ten in the sum of products), each
+/// within a relative 2^-53 of a value that is bounded by the sum of the terms' magnitudes; that
+/// sum is rounded as often. 2^-48 of it covers both. Products of five coefficients below 2^55
+/// neither overflow nor, being integers, underflow.
+#[must_use]
+pub fn cofactors_rounded(rows: [&[f64; 6]; 5]) -> ([f64; 6], [f64; 6]) {
+    const FILTER: f64 = 1.0 / (1_u64 << 48) as f64;
+    let mut m2 = [[0.0; 3]; 10];
+    let mut d2 = [[0.0; 3]; 10];
+    let mut m2_size = [[0.0; 3]; 10];
+    let mut d2_size = [[0.0; 3]; 10];
+    for (p, &(i, j)) in PAIRS.iter().enumerate() {
+        let (a, b) = (rows[i], rows[j]);
+        for (k, &(c, e)) in COLUMN_PAIRS.iter().enumerate() {
+            let (x, y) = (a[c] * b[e], a[e] * b[c]);
+            m2[p][k] = x - y;
+            m2_size[p][k] = x.abs() + y.abs();
+            let (x, y) = (a[3 + c] * b[3 + e], a[3 + e] * b[3 + c]);
+            d2[p][k] = x - y;
+            d2_size[p][k] = x.abs() + y.abs();
+        }
+    }
+    let mut out = [0.0; 6];
+    let mut size = [0.0; 6];
+    for (p, &(t, tail, sign)) in COMPLEMENTS.iter().enumerate() {
+        let r = rows[t];
+        let (d, m) = (&d2[tail], &m2[tail]);
+        let d3 = r[3] * d[0] - r[4] * d[1] + r[5] * d[2];
+        let m3 = r[0] * m[0] - r[1] * m[1] + r[2] * m[2];
+        let (d, m) = (&d2_size[tail], &m2_size[tail]);
+        let d3_size = r[3].abs() * d[0] + r[4].abs() * d[1] + r[5].abs() * d[2];
+        let m3_size = r[0].abs() * m[0] + r[1].abs() * m[1] + r[2].abs() * m[2];
+        let sign = f64::from(sign);
+        for k in 0..3 {
+            out[k] += m2[p][k] * (sign * d3);
+            out[3 + k] += d2[p][k] * (sign * m3);
+            size[k] += m2_size[p][k] * d3_size;
+            size[3 + k] += d2_size[p][k] * m3_size;
+        }
+    }
+    let [a, b, c, d, e, f] = out;
+    ([a, -b, c, -d, e, -f], size.map(|s| s * FILTER))
 }
 
 /// Row pairs (i, j) with i < j.
@@ -171,9 +217,16 @@ pub fn quadric(v: &[I256; 6]) -> I512 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Row, bilinear, cofactors, dot, edge_row, line_through, quadric, side};
+    use super::{
+        Row, bilinear, cofactors, cofactors_rounded, dot, edge_row, line_through, quadric, side,
+    };
     use crate::{I256, LIMIT, Point, Sign};
     use dashu_int::IBig;
+
+    /// A double that is an integer.
+    fn exact_big(v: f64) -> IBig {
+        IBig::try_from(v).expect("cofactors are integers")
+    }
 
     struct Random(u64);
 
@@ -255,6 +308,13 @@ mod tests {
                     assert!(coordinate.bits() <= 195);
                 }
                 assert!(rows.iter().all(|r| dot(r, &v).sign().is_zero()));
+                let doubles = rows.map(|r| r.map(|c| c as f64));
+                let (rounded, error) = cofactors_rounded(std::array::from_fn(|i| &doubles[i]));
+                for k in 0..6 {
+                    let off = big(&v[k]) - exact_big(rounded[k]);
+                    let off = if off < IBig::ZERO { -off } else { off };
+                    assert!(off <= exact_big(error[k].ceil()));
+                }
             }
         }
     }

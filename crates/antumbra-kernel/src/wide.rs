@@ -96,45 +96,56 @@ impl<const N: usize> Int<N> {
     }
 
     /// The product with a 64-bit integer.
+    // Signs are random where this is used, so they are mended without a branch: a negative factor
+    // read as unsigned is 2^64 too large.
     #[inline]
     #[must_use]
     pub fn times_i64(&self, other: i64) -> Self {
-        let magnitude = other.unsigned_abs();
+        let (factor, mask) = (other as u64, (other >> 63) as u64);
         let mut out = [0_u64; N];
         let mut carry = 0_u64;
         for i in 0..N {
-            let t = u128::from(self.0[i]) * u128::from(magnitude) + u128::from(carry);
+            let t = u128::from(self.0[i]) * u128::from(factor) + u128::from(carry);
             out[i] = t as u64;
             carry = (t >> 64) as u64;
         }
-        let product = Self(out);
-        if other < 0 { -product } else { product }
+        let mut borrow = false;
+        for i in 1..N {
+            let (a, c1) = out[i].overflowing_sub(self.0[i - 1] & mask);
+            let (b, c2) = a.overflowing_sub(u64::from(borrow));
+            out[i] = b;
+            borrow = c1 | c2;
+        }
+        Self(out)
     }
 
-    /// The product of two 128-bit integers; `N` is at least 4.
+    /// The product of two 128-bit integers; `N` is at least 3, and with 3 the caller guarantees
+    /// that it fits.
     #[inline]
     #[must_use]
     pub fn product_i128(a: i128, b: i128) -> Self {
-        let (x, y) = (a.unsigned_abs(), b.unsigned_abs());
-        let (x0, x1) = (x as u64, (x >> 64) as u64);
-        let (y0, y1) = (y as u64, (y >> 64) as u64);
+        let (x0, x1) = (a as u64, (a >> 64) as u64);
+        let (y0, y1) = (b as u64, (b >> 64) as u64);
         let low = u128::from(x0) * u128::from(y0);
         let mid_a = u128::from(x0) * u128::from(y1);
         let mid_b = u128::from(x1) * u128::from(y0);
         let high = u128::from(x1) * u128::from(y1);
         let mid = (low >> 64) + u128::from(mid_a as u64) + u128::from(mid_b as u64);
-        let top = high + (mid_a >> 64) + (mid_b >> 64) + (mid >> 64);
-        let mut limbs = [0_u64; N];
+        let top = high
+            .wrapping_add(mid_a >> 64)
+            .wrapping_add(mid_b >> 64)
+            .wrapping_add(mid >> 64)
+            // A negative factor was read 2^128 too large.
+            .wrapping_sub((b & (a >> 127)) as u128)
+            .wrapping_sub((a & (b >> 127)) as u128);
+        let mut limbs = [((top as i128) >> 127) as u64; N];
         limbs[0] = low as u64;
         limbs[1] = mid as u64;
         limbs[2] = top as u64;
-        limbs[3] = (top >> 64) as u64;
-        let product = Self(limbs);
-        if (a < 0) == (b < 0) {
-            product
-        } else {
-            -product
+        if N > 3 {
+            limbs[3] = (top >> 64) as u64;
         }
+        Self(limbs)
     }
 
     /// The number of bits of the magnitude.

@@ -341,19 +341,39 @@ impl Cone {
     /// Two rays are adjacent if no third one lies on all the hyperplanes that both lie on: the
     /// sets of rays on each of these hyperplanes have just the two in common.
     fn crossings(&self, space: &mut PluckerSpace, h: Halfspace, signs: &[Sign]) -> Vec<Ray> {
+        // Nearly all cones have fewer than 64 facets: half of the bits then need no look.
+        if self.slots.len() <= 64 {
+            self.crossings_by(space, h, signs, |tight| tight as u64)
+        } else {
+            self.crossings_by(space, h, signs, |tight| tight)
+        }
+    }
+
+    fn crossings_by<S: Set>(
+        &self,
+        space: &mut PluckerSpace,
+        h: Halfspace,
+        signs: &[Sign],
+        tight: impl Fn(u128) -> S,
+    ) -> Vec<Ray> {
         let on = Incidence::new(&self.rays, self.slots.len());
-        let mut fresh = Vec::new();
-        for (i, p) in self.rays.iter().enumerate() {
-            if !signs[i].is_positive() {
+        let outside: Vec<(S, u32)> = (self.rays.iter().zip(signs).zip(0..))
+            .filter(|((_, s), _)| s.is_negative())
+            .map(|((ray, _), j)| (tight(ray.tight), j))
+            .collect();
+        let mut fresh = Vec::with_capacity(outside.len());
+        for (p, sign) in self.rays.iter().zip(signs) {
+            if !sign.is_positive() {
                 continue;
             }
-            for (j, n) in self.rays.iter().enumerate() {
-                if !signs[j].is_negative() {
-                    continue;
-                }
-                let common = p.tight & n.tight;
-                if at_least_four(common) && on.only_two_share(common) {
-                    fresh.push(self.crossing(space, h, p, n, common));
+            let own = tight(p.tight);
+            for &(other, j) in &outside {
+                if own.and(other).at_least_four() {
+                    let n = &self.rays[j as usize];
+                    let common = p.tight & n.tight;
+                    if on.only_two_share(common) {
+                        fresh.push(self.crossing(space, h, p, n, common));
+                    }
                 }
             }
         }
@@ -368,14 +388,16 @@ impl Cone {
         n: &Ray,
         common: u128,
     ) -> Ray {
-        let on: Vec<RowId> = bits(common).map(|k| self.slots[k].row).collect();
-        let rows = if on.len() == 4 {
-            on
-        } else {
-            space.independent(&on, 4)
+        let mut on = bits(common).map(|k| self.slots[k].row);
+        let rows = match (on.next(), on.next(), on.next(), on.next(), on.next()) {
+            (Some(a), Some(b), Some(c), Some(d), None) => Some([a, b, c, d]),
+            _ => {
+                let all: Vec<RowId> = bits(common).map(|k| self.slots[k].row).collect();
+                space.independent(&all, 4).try_into().ok()
+            }
         };
-        let vertex = match rows.as_slice() {
-            &[a, b, c, d] => space.cut_edge([a, b, c, d, h.row], p.vertex, n.vertex),
+        let vertex = match rows {
+            Some([a, b, c, d]) => space.cut_edge([a, b, c, d, h.row], p.vertex, n.vertex),
             // The residues failed (never seen): a combination is always right, only wider.
             _ => {
                 let exact = space.combination(h.row, [p.vertex, n.vertex]);
@@ -437,18 +459,18 @@ impl Cone {
 
     /// Drops half-spaces that fewer than five rays lie on: they are no facets.
     fn drop_redundant(&mut self) {
-        let mut counts = [0_u8; 128];
+        // Counts of all half-spaces side by side, a binary digit a word; what exceeds seven sticks.
+        let [mut ones, mut twos, mut fours, mut more] = [0_u128; 4];
         for ray in &self.rays {
-            for k in bits(ray.tight) {
-                counts[k] = counts[k].saturating_add(1);
-            }
+            let carry = ones & ray.tight;
+            ones ^= ray.tight;
+            let next = twos & carry;
+            twos ^= carry;
+            more |= fours & next;
+            fours ^= next;
         }
-        let mut dead = 0_u128;
-        for k in bits(self.live) {
-            if counts[k] < 5 {
-                dead |= 1 << k;
-            }
-        }
+        let five = more | fours & (ones | twos);
+        let dead = self.live & !five;
         if dead != 0 {
             self.live &= !dead;
             for ray in &mut self.rays {
@@ -525,10 +547,36 @@ impl Incidence {
     }
 }
 
-/// Whether a set has four members; spares a count of bits where processors lack the instruction.
-fn at_least_four(set: u128) -> bool {
-    let drop = |s: u128| s & s.wrapping_sub(1);
-    drop(drop(drop(set))) != 0
+/// A set of hyperplanes as bits.
+trait Set: Copy {
+    fn and(self, other: Self) -> Self;
+    /// Whether the set has four members; spares a count of bits where processors lack the
+    /// instruction.
+    fn at_least_four(self) -> bool;
+}
+
+impl Set for u64 {
+    #[inline]
+    fn and(self, other: Self) -> Self {
+        self & other
+    }
+    #[inline]
+    fn at_least_four(self) -> bool {
+        let drop = |s: Self| s & s.wrapping_sub(1);
+        drop(drop(drop(self))) != 0
+    }
+}
+
+impl Set for u128 {
+    #[inline]
+    fn and(self, other: Self) -> Self {
+        self & other
+    }
+    #[inline]
+    fn at_least_four(self) -> bool {
+        let drop = |s: Self| s & s.wrapping_sub(1);
+        drop(drop(drop(self))) != 0
+    }
 }
 
 fn bits(mut set: u128) -> impl Iterator<Item = usize> {

@@ -302,6 +302,18 @@ impl PluckerSpace {
         (sum, magnitude * FILTER + beyond * 1.01)
     }
 
+    /// The rounded dot product and a bound of its error that is quick to find: in the bound of
+    /// [`PluckerSpace::dot`] the coordinates of the vertex are replaced by the largest ones.
+    #[inline]
+    fn dot_coarse(&self, row: RowId, vertex: VertexId) -> (f64, f64) {
+        let row = &self.rows[row.0 as usize];
+        let data = &self.vertices[vertex.0 as usize];
+        let (r, v) = (&row.rounded, &data.rounded);
+        let sum = r[0] * v[0] + r[1] * v[1] + r[2] * v[2] + r[3] * v[3] + r[4] * v[4] + r[5] * v[5];
+        let part = |k: usize| row.size[k] * (data.size[k] * FILTER + data.error[k]);
+        (sum, (part(0) + part(1)) * 1.01)
+    }
+
     /// Adds the vertex in which a row cuts the edge between two vertices, p where the row is
     /// positive up to `sign`, n where it is negative; `rows` are five independent rows it lies on.
     ///
@@ -335,25 +347,61 @@ impl PluckerSpace {
             trusted &= error[part] < TRUSTED * lw;
         }
         if trusted {
-            let data = VertexData {
-                rounded,
-                error,
-                size: sizes,
-                exact: OnceCell::new(),
-                origin: Some(origin),
-            };
-            self.vertices.push(data);
-            return VertexId((self.vertices.len() - 1) as u32);
+            return self.push_rounded(rounded, error, origin);
+        }
+        let certain = (0..6).find(|&k| rounded[k].abs() > 2.0 * error[k / 3]);
+        let certain = certain
+            .filter(|_| sp > 4.0 * ep && sn > 4.0 * en)
+            .map(|k| (k, rounded[k] < 0.0));
+        if let Some((rounded, error)) = certain.and_then(|known| self.meet_rounded(rows, known))
+            && (0..2).all(|part| error[part] < TRUSTED * largest(&rounded)[part])
+        {
+            return self.push_rounded(rounded, error, origin);
         }
         let exact = match self.meet(rows) {
-            Some(exact) => {
-                let certain = (0..6).find(|&k| rounded[k].abs() > 2.0 * error[k / 3]);
-                let k = certain.filter(|_| sp > 4.0 * ep && sn > 4.0 * en);
-                self.oriented(exact, origin, k.map(|k| (k, rounded[k] < 0.0)))
-            }
+            Some(exact) => self.oriented(exact, origin, certain),
             None => self.combination(rows[4], origin.ends),
         };
         self.push_vertex(exact)
+    }
+
+    fn push_rounded(&mut self, rounded: [f64; 6], error: [f64; 2], origin: Origin) -> VertexId {
+        self.vertices.push(VertexData {
+            rounded,
+            error,
+            size: largest(&rounded),
+            exact: OnceCell::new(),
+            origin: Some(origin),
+        });
+        VertexId((self.vertices.len() - 1) as u32)
+    }
+
+    /// The vertex on five rows in doubles, scaled, with bounds of the errors of direction and
+    /// moment; one coordinate's sign is known. `None` where doubles do not tell that sign.
+    fn meet_rounded(
+        &self,
+        rows: [RowId; 5],
+        (k, negative): (usize, bool),
+    ) -> Option<([f64; 6], [f64; 2])> {
+        let data = rows.map(|r| &self.rows[r.0 as usize]);
+        if data.iter().any(|r| r.large) {
+            return None;
+        }
+        let (v, error) = plucker::cofactors_rounded(data.map(|r| &r.rounded));
+        if v[k].abs() <= error[k] {
+            return None;
+        }
+        let [directions, moments] = largest(&v);
+        // A power of two, so that nothing is rounded.
+        let exponent = (directions.max(moments).to_bits() >> 52) as i64 - 1023;
+        let scale = f64::from_bits(((1023 - exponent) as u64) << 52);
+        let factor = if (v[k] < 0.0) == negative {
+            scale
+        } else {
+            -scale
+        };
+        let [e, f] = largest(&error);
+        Some((v.map(|c| c * factor), [e * scale, f * scale]))
     }
 
     /// Gives cofactors the sign of the positive combination that they are: by a coordinate whose
@@ -404,6 +452,14 @@ impl PluckerSpace {
     #[inline]
     #[must_use]
     pub fn sign(&mut self, row: RowId, vertex: VertexId) -> Sign {
+        let (sum, bound) = self.dot_coarse(row, vertex);
+        if sum.abs() > bound {
+            return Sign::of(sum);
+        }
+        self.careful_sign(row, vertex)
+    }
+
+    fn careful_sign(&mut self, row: RowId, vertex: VertexId) -> Sign {
         loop {
             let (sum, bound) = self.dot(row, vertex);
             if sum > bound {

@@ -25,7 +25,7 @@ pub struct Caster<'a> {
 pub(crate) struct Segment {
     pub from: [f64; 3],
     pub step: [f64; 3],
-    moment: [f64; 3],
+    pub moment: [f64; 3],
 }
 
 impl Segment {
@@ -120,6 +120,12 @@ impl<'a> Caster<'a> {
     pub(crate) fn normal(&self, id: PolygonId) -> [f64; 3] {
         let p = &self.planes[id.index()];
         [p[0], p[1], p[2]]
+    }
+
+    /// The offset of a polygon's plane.
+    #[inline]
+    pub(crate) fn offset(&self, id: PolygonId) -> f64 {
+        self.planes[id.index()][3]
     }
 
     /// Where the segment's line crosses a polygon (touching counts), as a parameter.

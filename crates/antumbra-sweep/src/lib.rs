@@ -1,6 +1,7 @@
 //! *What is seen?* Where object space and line space meet: exact verdicts and their certificates.
 
 mod blocker;
+mod bundle;
 mod caster;
 mod check;
 mod cover;

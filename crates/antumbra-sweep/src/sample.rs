@@ -10,6 +10,8 @@ pub(crate) struct Sampler {
     /// Factors that give all rays directions of like length, so that a sum of them lies in the
     /// middle in space and not only in Plücker space.
     balance: Vec<f64>,
+    /// Memory for the weights of one point.
+    weights: Vec<f64>,
 }
 
 /// The Plücker quadric, twice: d . m + m . d.
@@ -50,21 +52,36 @@ impl Sampler {
             .iter()
             .map(|&l| longest / l.max(longest / (1_u64 << 40) as f64))
             .collect();
-        Self { rays, balance }
+        let weights = vec![0.0; rays.len().next_multiple_of(2)];
+        Self {
+            rays,
+            balance,
+            weights,
+        }
     }
 
     /// A random point of the cone; a higher `spread` stays closer to single rays, an odd one
     /// balances their directions.
-    fn point(&self, rng: &mut Random, spread: u32) -> [f64; 6] {
+    fn point(&mut self, rng: &mut Random, spread: u32) -> [f64; 6] {
+        const UNIT: f64 = 1.0 / (1_u64 << 31) as f64;
+        // Two weights from one random number: two billion values are enough.
+        for pair in self.weights.chunks_exact_mut(2) {
+            let bits = rng.bits();
+            pair[0] = f64::from((bits as u32 >> 1) as i32) * UNIT + 1e-3;
+            pair[1] = f64::from((bits >> 33) as i32) * UNIT + 1e-3;
+        }
+        for _ in 0..spread / 2 {
+            self.weights.iter_mut().for_each(|w| *w *= *w);
+        }
+        if spread % 2 == 1 {
+            let balance = self.balance.iter();
+            self.weights
+                .iter_mut()
+                .zip(balance)
+                .for_each(|(w, b)| *w *= b);
+        }
         let mut out = [0.0; 6];
-        for (ray, balance) in self.rays.iter().zip(&self.balance) {
-            let mut w = rng.unit() + 1e-3;
-            for _ in 0..spread / 2 {
-                w *= w;
-            }
-            if spread % 2 == 1 {
-                w *= balance;
-            }
+        for (&w, ray) in self.weights.iter().zip(&self.rays) {
             for k in 0..6 {
                 out[k] += w * ray[k];
             }
@@ -74,7 +91,7 @@ impl Sampler {
 
     /// Up to `count` real lines, as directions and moments.
     pub(crate) fn lines(
-        &self,
+        &mut self,
         rng: &mut Random,
         count: usize,
         out: &mut Vec<([f64; 3], [f64; 3])>,
@@ -85,7 +102,7 @@ impl Sampler {
     /// A few lines of a cone whose real lines are hard to hit: starts from points of either sign
     /// on edges and moves them inside as far as the sign allows.
     pub(crate) fn persist(
-        &self,
+        &mut self,
         rng: &mut Random,
         count: usize,
         out: &mut Vec<([f64; 3], [f64; 3])>,
@@ -140,7 +157,7 @@ impl Sampler {
     }
 
     /// Moves a point towards a random inner one, as far as the quadric keeps its sign.
-    fn move_inside(&self, p: &[f64; 6], sign: f64, rng: &mut Random) -> Option<[f64; 6]> {
+    fn move_inside(&mut self, p: &[f64; 6], sign: f64, rng: &mut Random) -> Option<[f64; 6]> {
         let spread = (rng.bits() % 4) as u32;
         let mut inner = self.point(rng, spread);
         let scale = norm(p) / norm(&inner);
@@ -177,7 +194,7 @@ impl Sampler {
     }
 
     fn draw(
-        &self,
+        &mut self,
         rng: &mut Random,
         count: usize,
         tries: usize,

@@ -18,7 +18,8 @@ use antumbra_lines::{
 };
 use antumbra_scene::PolygonId;
 
-use crate::caster::{Caster, Segment};
+use crate::bundle::{Bundle, LANES};
+use crate::caster::Caster;
 use crate::proof::{Node, RowName, Tree};
 use crate::random::Random;
 use crate::sample::Sampler;
@@ -100,7 +101,7 @@ const RECENT: usize = 12;
 /// Draws of lines from a cone before it is given up as too thin for doubles.
 const PATIENCE: usize = 50;
 /// Lines sampled in a cone.
-const SAMPLES: usize = 12;
+const SAMPLES: usize = LANES;
 
 enum Slot {
     Open,
@@ -225,7 +226,7 @@ impl Searcher {
             slots[slot] = Slot::Done(Node::Imaginary);
             return Ok(());
         }
-        let sampler = Sampler::new(&self.space, &cone);
+        let mut sampler = Sampler::new(&self.space, &cone);
         if let Some(angle) = frame.question.ignore_below
             && size_below(&self.space, &cone, &sampler, frame.question.from, angle)
         {
@@ -242,22 +243,24 @@ impl Searcher {
                 sampler.persist(rng, SAMPLES / 2, &mut lines);
             }
             self.work.samples += lines.len() as u64;
-            let segments: Vec<Segment> = lines
-                .iter()
-                .filter_map(|(d, m)| between_gates(d, m, frame.question))
-                .collect();
-            if segments.is_empty() {
+            let mut bundle = Bundle::new();
+            for (d, m) in &lines {
+                if let Some(segment) = between_gates(d, m, frame.question) {
+                    bundle.push(segment);
+                }
+            }
+            if bundle.is_empty() {
                 break;
             }
-            match self.choose(frame, &cone, &segments) {
+            match self.choose(frame, &cone, &bundle) {
                 Ok(blocker) => return self.subtract(cone, slot, slots, stack, blocker),
                 Err(Answer::Undecided(Undecided::Thin)) => {}
                 Err(answer) => return Err(answer),
             }
         }
         for _ in 0..PATIENCE / 10 {
-            let segments = self.thin_segments(frame.question, &cone, rng);
-            match self.choose(frame, &cone, &segments) {
+            let bundle = self.thin_segments(frame.question, &cone, rng);
+            match self.choose(frame, &cone, &bundle) {
                 Ok(blocker) => return self.subtract(cone, slot, slots, stack, blocker),
                 Err(Answer::Undecided(Undecided::Thin)) => {}
                 Err(answer) => return Err(answer),

@@ -7,7 +7,8 @@ use antumbra_scene::PolygonId;
 
 use super::{Answer, Question, Searcher, Undecided};
 use crate::blocker::{BlockerCone, blocker_cones};
-use crate::caster::{SAMPLING_SLACK, Segment};
+use crate::bundle::Bundle;
+use crate::caster::{SAMPLING_SLACK, Segment, dot};
 use crate::line::{Between, FineLine, Meeting, obstacle};
 use crate::proof::RowName;
 use crate::verdict::FinePoint;
@@ -39,13 +40,13 @@ impl Searcher {
         &mut self,
         frame: &mut Frame<'_>,
         cone: &Cone,
-        segments: &[Segment],
+        bundle: &Bundle,
     ) -> Result<Blocking, Answer> {
         // Doubles see a line blocked that only touches an occluder, at the rim of the cone or in
         // the target's plane. Such an occluder must not keep others from being asked.
         let mut refused: Vec<(PolygonId, bool)> = Vec::new();
         loop {
-            let tally = self.votes(frame.question, segments, &refused)?;
+            let tally = self.votes(frame.question, bundle, &refused)?;
             let before = refused.len();
             while let Some((id, negative)) = tally.best(&refused) {
                 if let Some(cuts) = self.cuts(frame, cone, id, negative) {
@@ -68,42 +69,29 @@ impl Searcher {
     fn votes(
         &self,
         question: &Question<'_>,
-        segments: &[Segment],
+        bundle: &Bundle,
         refused: &[(PolygonId, bool)],
     ) -> Result<Tally, Answer> {
-        let blocked = |id: PolygonId, s: &Segment| {
-            blocks(question, id, s).filter(|&negative| !refused.contains(&(id, negative)))
-        };
         // Known blockers first: the scene is asked only about lines that none of them blocks.
         let mut tally = Tally::default();
-        let mut candidates: Vec<(PolygonId, usize)> =
-            self.recent.iter().map(|&id| (id, segments.len())).collect();
-        for (i, s) in segments.iter().enumerate() {
-            let mut any = false;
-            for (id, _) in &candidates {
-                if let Some(negative) = blocked(*id, s) {
-                    tally.add(*id, negative);
-                    any = true;
-                }
-            }
-            if any {
+        for &id in &self.recent {
+            tally.add(blocked(question, id, bundle, refused));
+        }
+        for (i, s) in bundle.segments().iter().enumerate() {
+            if tally.blocked >> i & 1 == 1 {
                 continue;
             }
             question
                 .caster
                 .visit(s, (-1e-9, 1.0 + 1e-9), SAMPLING_SLACK, |items, _, _| {
                     for &id in items {
-                        if candidates.iter().all(|c| c.0 != id)
-                            && let Some(negative) = blocked(id, s)
-                        {
-                            any = true;
-                            tally.add(id, negative);
-                            candidates.push((id, i));
+                        if !tally.asked.contains(&id) && blocks(question, id, s) {
+                            tally.add(blocked(question, id, bundle, refused));
                         }
                     }
                     std::ops::ControlFlow::Continue(())
                 });
-            if any {
+            if tally.blocked >> i & 1 == 1 {
                 continue;
             }
             let (u, v) = (FinePoint::round(s.from), FinePoint::round(s.at(1.0)));
@@ -112,18 +100,8 @@ impl Searcher {
             }
             match verify(question, u, v) {
                 Ok(()) => return Err(Answer::Open(u, v)),
-                Err(Some((id, negative))) => tally.add(id, negative),
+                Err(Some((id, negative))) => tally.vote(id, negative, 1),
                 Err(None) => {}
-            }
-        }
-        // Late candidates have not seen the earlier lines yet.
-        for &(id, found) in &candidates {
-            if found < segments.len() {
-                for s in &segments[..found] {
-                    if let Some(negative) = blocked(id, s) {
-                        tally.add(id, negative);
-                    }
-                }
             }
         }
         Ok(tally)
@@ -177,17 +155,37 @@ impl Searcher {
     }
 }
 
+/// Which of the sampled lines an occluder blocks, along its normal and against it.
+struct Blocked {
+    polygon: PolygonId,
+    along: u16,
+    against: u16,
+}
+
 /// Votes of sampled lines for occluders.
 #[derive(Default)]
 struct Tally {
+    asked: Vec<PolygonId>,
     votes: Vec<(PolygonId, bool, u32)>,
+    /// The lines that some occluder blocks.
+    blocked: u16,
 }
 
 impl Tally {
-    fn add(&mut self, id: PolygonId, negative: bool) {
+    fn add(&mut self, blocked: Blocked) {
+        self.asked.push(blocked.polygon);
+        for (negative, lines) in [(false, blocked.along), (true, blocked.against)] {
+            if lines != 0 {
+                self.vote(blocked.polygon, negative, lines.count_ones());
+                self.blocked |= lines;
+            }
+        }
+    }
+
+    fn vote(&mut self, id: PolygonId, negative: bool, lines: u32) {
         match self.votes.iter_mut().find(|v| v.0 == id && v.1 == negative) {
-            Some(v) => v.2 += 1,
-            None => self.votes.push((id, negative, 1)),
+            Some(v) => v.2 += lines,
+            None => self.votes.push((id, negative, lines)),
         }
     }
 
@@ -200,31 +198,67 @@ impl Tally {
     }
 }
 
-/// Whether an occluder blocks a segment between the gates, in doubles, and whether it is crossed
-/// against its normal.
-fn blocks(question: &Question<'_>, id: PolygonId, s: &Segment) -> Option<bool> {
-    let caster = question.caster;
-    if !caster.occludes(id) || question.absent.contains(&id.0) {
-        return None;
-    }
-    let t = caster.crossing(id, s)?;
-    const END: f64 = 1e-9;
-    if !(-END..=1.0 + END).contains(&t) {
-        return None;
-    }
-    if !(END..=1.0 - END).contains(&t) {
-        let polygon = caster.scene().polygon(id);
-        if t < END {
-            let inside = crate::line::lies_in(&polygon, &question.from.plane);
-            if inside && !question.source_plane_blocks {
-                return None;
+/// Which segments between the gates an occluder blocks, in doubles; what was refused never.
+fn blocked(
+    question: &Question<'_>,
+    id: PolygonId,
+    bundle: &Bundle,
+    refused: &[(PolygonId, bool)],
+) -> Blocked {
+    let mut lines = [0_u16; 2];
+    if may_block(question, id) {
+        let normal = question.caster.normal(id);
+        bundle.for_each_crossing(question.caster, id, |lane, t| {
+            if lies_between(question, id, t) {
+                let against = dot(normal, bundle.segments()[lane].step) < 0.0;
+                lines[usize::from(against)] |= 1 << lane;
+            }
+        });
+        for (lines, negative) in lines.iter_mut().zip([false, true]) {
+            if refused.contains(&(id, negative)) {
+                *lines = 0;
             }
         }
-        if t > 1.0 - END && crate::line::lies_in(&polygon, &question.to.plane) {
-            return None;
-        }
     }
-    Some(crate::caster::dot(caster.normal(id), s.step) < 0.0)
+    Blocked {
+        polygon: id,
+        along: lines[0],
+        against: lines[1],
+    }
+}
+
+/// Whether an occluder blocks a segment between the gates, in doubles.
+fn blocks(question: &Question<'_>, id: PolygonId, s: &Segment) -> bool {
+    may_block(question, id)
+        && question
+            .caster
+            .crossing(id, s)
+            .is_some_and(|t| lies_between(question, id, t))
+}
+
+fn may_block(question: &Question<'_>, id: PolygonId) -> bool {
+    question.caster.occludes(id) && !question.absent.contains(&id.0)
+}
+
+/// Whether an occluder that a segment crosses at some parameter stands between the gates.
+fn lies_between(question: &Question<'_>, id: PolygonId, t: f64) -> bool {
+    const END: f64 = 1e-9;
+    if (END..=1.0 - END).contains(&t) {
+        return true;
+    }
+    if !(-END..=1.0 + END).contains(&t) {
+        return false;
+    }
+    let polygon = question.caster.scene().polygon(id);
+    let gate = if t < END {
+        if question.source_plane_blocks {
+            return true;
+        }
+        question.from
+    } else {
+        question.to
+    };
+    !crate::line::lies_in(&polygon, &gate.plane)
 }
 
 /// Exactly: the line crosses both gates inside and nothing in between. On failure the obstacle.

@@ -5,6 +5,7 @@ use antumbra_lines::{Cone, Gate, nearly_real};
 use dashu_int::IBig;
 
 use super::{Question, Searcher};
+use crate::bundle::Bundle;
 use crate::caster::Segment;
 use crate::random::Random;
 
@@ -15,18 +16,23 @@ impl Searcher {
         question: &Question<'_>,
         cone: &Cone,
         rng: &mut Random,
-    ) -> Vec<Segment> {
+    ) -> Bundle {
         const LINES: usize = 4;
         const BITS: usize = 160;
-        (0..LINES)
-            .filter_map(|_| {
-                let weight = || 1 + (rng.bits() >> 48) as u32;
-                let line = nearly_real(&mut self.space, cone, BITS, weight)?;
-                let from = meet_plane_exactly(&line, &question.from.plane)?;
-                let to = meet_plane_exactly(&line, &question.to.plane)?;
-                Some(Segment::new(from, to))
-            })
-            .collect()
+        let mut segment = || {
+            let weight = || 1 + (rng.bits() >> 48) as u32;
+            let line = nearly_real(&mut self.space, cone, BITS, weight)?;
+            let from = meet_plane_exactly(&line, &question.from.plane)?;
+            let to = meet_plane_exactly(&line, &question.to.plane)?;
+            Some(Segment::new(from, to))
+        };
+        let mut bundle = Bundle::new();
+        for _ in 0..LINES {
+            if let Some(segment) = segment() {
+                bundle.push(segment);
+            }
+        }
+        bundle
     }
 }
 
