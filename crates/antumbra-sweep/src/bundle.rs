@@ -5,7 +5,7 @@ use antumbra_scene::PolygonId;
 use crate::caster::{Caster, Segment, dot};
 
 /// Segments in a bundle at most.
-pub(crate) const LANES: usize = 12;
+pub(crate) const LANES: usize = 6;
 
 /// Up to [`LANES`] segments, their lines' coordinates in columns.
 #[derive(Clone, Debug)]
