@@ -56,6 +56,21 @@ pub struct RaySigns {
 }
 
 impl RaySigns {
+    /// No signs yet, in some memory.
+    pub(crate) fn within(mut signs: Vec<Sign>, capacity: usize) -> Self {
+        signs.clear();
+        signs.reserve(capacity);
+        Self {
+            signs,
+            inside: 0,
+            outside: 0,
+        }
+    }
+
+    pub(crate) fn into_memory(self) -> Vec<Sign> {
+        self.signs
+    }
+
     fn push(&mut self, sign: Sign) {
         self.inside += usize::from(sign.is_positive());
         self.outside += usize::from(sign.is_negative());
@@ -215,11 +230,7 @@ impl Cone {
     #[must_use]
     pub fn signs(&self, space: &mut PluckerSpace, h: Halfspace) -> RaySigns {
         let slot = self.slot_of(h.row);
-        let mut out = RaySigns {
-            signs: Vec::with_capacity(self.rays.len()),
-            inside: 0,
-            outside: 0,
-        };
+        let mut out = space.ray_signs(self.rays.len());
         for ray in &self.rays {
             out.push(match slot {
                 Some(k) if ray.tight >> k & 1 == 1 => Sign::Zero,
@@ -240,11 +251,7 @@ impl Cone {
         whole: &RaySigns,
         cut: &RaySigns,
     ) -> RaySigns {
-        let mut out = RaySigns {
-            signs: Vec::with_capacity(self.rays.len()),
-            inside: 0,
-            outside: 0,
-        };
+        let mut out = space.ray_signs(self.rays.len());
         for (&s, c) in whole.signs.iter().zip(&cut.signs) {
             if !c.is_negative() {
                 out.push(s);

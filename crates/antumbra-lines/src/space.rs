@@ -11,7 +11,7 @@ use antumbra_kernel::plucker::{self, Row};
 use antumbra_kernel::{I256, Sign};
 use dashu_int::IBig;
 
-use crate::cone::Halfspace;
+use crate::cone::{Halfspace, RaySigns};
 
 /// A hyperplane of a [`PluckerSpace`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -86,6 +86,8 @@ pub struct PluckerSpace {
     by_row: HashMap<Row, u32, std::hash::BuildHasherDefault<RowHasher>>,
     vertices: Vec<VertexData>,
     exact_signs: u64,
+    /// Memory of signs that are no longer needed.
+    spare: Vec<Vec<Sign>>,
 }
 
 /// A multiplicative hash: rows are already well spread, and the order of a map is never used.
@@ -150,6 +152,15 @@ impl PluckerSpace {
         self.rows.clear();
         self.by_row.clear();
         self.vertices.clear();
+    }
+
+    pub(crate) fn ray_signs(&mut self, count: usize) -> RaySigns {
+        RaySigns::within(self.spare.pop().unwrap_or_default(), count)
+    }
+
+    /// Keeps the memory of signs for others.
+    pub fn discard(&mut self, signs: RaySigns) {
+        self.spare.push(signs.into_memory());
     }
 
     /// How many signs the doubles could not decide so far.

@@ -293,13 +293,16 @@ impl Searcher {
                 Ok(Split::Inside) => {}
                 Ok(Split::Both(inside, outside)) => {
                     for other in &mut cuts {
-                        other.signs = inside.inherited_signs(
+                        let signs = inside.inherited_signs(
                             &mut self.space,
                             other.halfspace,
                             &other.signs,
                             &cut.signs,
                         );
+                        let whole = std::mem::replace(&mut other.signs, signs);
+                        self.space.discard(whole);
                     }
+                    self.space.discard(cut.signs);
                     let (a, b) = (slots.len(), slots.len() + 1);
                     slots.push(Slot::Open);
                     slots.push(Slot::Open);

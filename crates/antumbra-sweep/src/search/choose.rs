@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use antumbra_lines::{Cone, Halfspace, RaySigns};
 use antumbra_scene::PolygonId;
 
-use super::{Answer, Question, Searcher, Undecided};
+use super::{Answer, Question, RECENT, Searcher, Undecided};
 use crate::blocker::{BlockerCone, blocker_cones};
 use crate::bundle::Bundle;
 use crate::caster::{SAMPLING_SLACK, Segment, dot};
@@ -25,6 +25,14 @@ pub(super) struct Blocking {
     pub polygon: PolygonId,
     pub negative: bool,
     pub cuts: Vec<Cut>,
+}
+
+/// Why an occluder is not subtracted.
+enum Passed {
+    /// Its blocker cone does not meet the cone inside.
+    Apart,
+    /// Another one leaves less.
+    Worse,
 }
 
 /// A question and the blocker cones found for it so far.
@@ -79,27 +87,36 @@ impl Searcher {
                 break;
             }
             refused.push((polygon, negative));
-            let Some(cuts) = self.cuts(frame, cone, polygon, negative) else {
-                continue;
+            let vote = VOTE * f64::from(votes);
+            let limit = best.as_ref().map_or(f64::INFINITY, |b| b.0 + vote);
+            let (left, cuts) = match self.cuts(frame, cone, (polygon, negative), limit) {
+                Ok(better) => better,
+                Err(Passed::Apart) => continue,
+                Err(Passed::Worse) => {
+                    rivals += 1;
+                    continue;
+                }
             };
             (rivals, most) = (rivals + 1, most.max(votes));
-            let outside = cuts.iter().map(|c| c.signs.outside());
-            let parts = outside.clone().filter(|&n| n > 0).count() as f64;
-            let rays = outside.sum::<usize>() as f64 / cone.ray_count() as f64;
-            let cost = parts + rays - VOTE * f64::from(votes);
-            if best.as_ref().is_none_or(|b| cost < b.0) {
-                let blocking = Blocking {
-                    polygon,
-                    negative,
-                    cuts,
-                };
-                best = Some((cost, blocking));
+            let blocking = Blocking {
+                polygon,
+                negative,
+                cuts,
+            };
+            if let Some((_, loser)) = best.replace((left - vote, blocking)) {
+                self.discard(loser.cuts);
             }
-            if parts == 0.0 {
+            if left == 0.0 {
                 break;
             }
         }
         best.map(|b| b.1)
+    }
+
+    fn discard(&mut self, cuts: Vec<Cut>) {
+        for cut in cuts {
+            self.space.discard(cut.signs);
+        }
     }
 
     /// Which occluders block how many of the sampled lines, those refused apart; or a free line as
@@ -111,7 +128,11 @@ impl Searcher {
         refused: &[(PolygonId, bool)],
     ) -> Result<Tally, Answer> {
         // Known blockers first: the scene is asked only about lines that none of them blocks.
-        let mut tally = Tally::default();
+        let mut tally = Tally {
+            asked: Vec::with_capacity(2 * RECENT),
+            votes: Vec::with_capacity(2 * RECENT),
+            blocked: 0,
+        };
         for &id in &self.recent {
             tally.add(blocked(question, id, bundle, refused));
         }
@@ -145,28 +166,36 @@ impl Searcher {
         Ok(tally)
     }
 
-    /// The rows of an occluder's blocker cone with their signs on a cone, if the two meet inside.
+    /// What an occluder's blocker cone leaves of a cone (the parts outside its rows, and the share
+    /// of the rays there), and its rows with their signs; if the two meet inside and less than a
+    /// limit is left.
     fn cuts(
         &mut self,
         frame: &mut Frame<'_>,
         cone: &Cone,
-        id: PolygonId,
-        negative: bool,
-    ) -> Option<Vec<Cut>> {
-        let rows = self.rows(frame, id, negative)?;
+        (id, negative): (PolygonId, bool),
+        limit: f64,
+    ) -> Result<(f64, Vec<Cut>), Passed> {
+        let rows = self.rows(frame, id, negative).ok_or(Passed::Apart)?;
         let mut cuts = Vec::with_capacity(rows.len());
+        let mut left = 0.0;
         for &(halfspace, name) in rows {
             let signs = cone.signs(&mut self.space, halfspace);
-            if signs.inside() == 0 {
-                return None;
+            let misses = signs.inside() == 0;
+            if signs.outside() > 0 {
+                left += 1.0 + signs.outside() as f64 / cone.ray_count() as f64;
             }
             cuts.push(Cut {
                 halfspace,
                 name,
                 signs,
             });
+            if misses || left >= limit {
+                self.discard(cuts);
+                return Err(if misses { Passed::Apart } else { Passed::Worse });
+            }
         }
-        Some(cuts)
+        Ok((left, cuts))
     }
 
     fn rows<'f>(
@@ -201,7 +230,6 @@ struct Blocked {
 }
 
 /// Votes of sampled lines for occluders.
-#[derive(Default)]
 struct Tally {
     asked: Vec<PolygonId>,
     votes: Vec<(PolygonId, bool, u32)>,
