@@ -3,12 +3,13 @@
 //!
 //! The scene is snapped once to an integer grid; everything after is exact. See [`region`] for
 //! potentially visible sets, [`pair`] for two polygons, objects or points, [`ray`](mod@ray) for one
-//! line, [`map`] for everything seen from a point.
+//! line, [`map`] for everything seen from a point, [`shadow`] for what a light reaches.
 
 pub mod map;
 pub mod pair;
 pub mod ray;
 pub mod region;
+pub mod shadow;
 
 pub use antumbra_kernel as kernel;
 pub use antumbra_scene as scene;

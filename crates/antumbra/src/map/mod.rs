@@ -42,6 +42,7 @@ use antumbra_sweep::occlusion::{SweepOptions, SweepWork, Twins};
 
 pub use antumbra_sweep::occlusion;
 pub use classify::{EdgeClass, Element};
+pub(crate) use view::meet_from;
 pub use view::{MapError, Viewpoint, camera_axes};
 
 /// Which edges are removed from a map.
@@ -282,7 +283,7 @@ impl VisibilityMap {
     /// If there is no such vertex or polygon.
     #[must_use]
     pub fn point_on(&self, scene: &Scene, vertex: u32, polygon: PolygonId) -> [f64; 3] {
-        let ray = self.exact[vertex as usize].to_f64();
+        let ray = &self.exact[vertex as usize];
         self.view.meet(scene, ray, scene.polygon(polygon).plane)
     }
 
@@ -350,6 +351,10 @@ impl<'a> Mapper<'a> {
     #[must_use]
     pub fn scene(&self) -> &'a Scene {
         self.scene
+    }
+
+    pub(crate) fn twins(&self) -> &Twins {
+        &self.twins
     }
 
     /// The visibility map of a view. The viewpoint is snapped to the grid; a polygon in whose plane

@@ -1,6 +1,7 @@
 //! Where a map is seen from: a point and all its directions, a frustum, or parallel lines.
 
 use antumbra_kernel::{Plane, Point, SnapError};
+use antumbra_lines::ExactRay;
 use antumbra_scene::{PolygonId, Scene};
 use antumbra_sweep::occlusion::{
     ParallelView, PointView, Sweep, Twins, View, sweep, sweep_in_order,
@@ -113,6 +114,11 @@ pub enum MapError {
     /// The edges of a frustum.
     #[error("the directions of the frustum's edges do not bound a convex pyramid with an inside")]
     NoInside,
+    /// Two neighboring corners of an area light are one point.
+    #[error(
+        "the light has no area on the grid: neighboring corners must be different points; move them apart or refine the grid"
+    )]
+    NoLight,
 }
 
 /// What a finished map remembers of its view.
@@ -142,21 +148,28 @@ impl Seen {
     }
 
     /// Where a line meets a plane, in scene units.
-    pub(super) fn meet(&self, scene: &Scene, ray: [f64; 3], plane: &Plane) -> [f64; 3] {
-        let (from, along) = match *self {
-            Self::Point(eye) => (eye.to_f64(), ray),
-            Self::Parallel(d) => (Self::on_line(d, ray), d.map(f64::from)),
+    pub(super) fn meet(&self, scene: &Scene, ray: &ExactRay, plane: &Plane) -> [f64; 3] {
+        let d = match *self {
+            Self::Point(eye) => return meet_from(scene, eye, ray, plane),
+            Self::Parallel(d) => d,
         };
+        let from = Self::on_line(d, ray.to_f64());
         let n = plane.normal.map(|c| c as f64);
         let dot = |v: [f64; 3]| n[0] * v[0] + n[1] * v[1] + n[2] * v[2];
-        // The largest component first keeps products of large rays finite.
-        let t = match *self {
-            Self::Point(eye) => -(plane.evaluate(eye) as f64) / dot(along),
-            Self::Parallel(_) => (plane.offset as f64 - dot(from)) / dot(along),
-        };
+        let along = d.map(f64::from);
+        let t = (plane.offset as f64 - dot(from)) / dot(along);
         let p = std::array::from_fn(|k| from[k] + t * along[k]);
         scene.grid().to_scene_f64(p)
     }
+}
+
+/// Where a ray from a point meets a plane that does not hold the point, in scene units. The way
+/// there is within a relative error of 2^-50, however flat the ray meets the plane.
+pub(crate) fn meet_from(scene: &Scene, eye: Point, ray: &ExactRay, plane: &Plane) -> [f64; 3] {
+    let t = -(plane.evaluate(eye) as f64) / ray.dot(plane.normal);
+    let (from, along) = (eye.to_f64(), ray.to_f64());
+    let p = std::array::from_fn(|k| from[k] + t * along[k]);
+    scene.grid().to_scene_f64(p)
 }
 
 pub(super) fn main_axis(direction: [i32; 3]) -> usize {

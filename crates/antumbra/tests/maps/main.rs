@@ -2,4 +2,5 @@
 
 mod oracle;
 mod real;
+mod shadow;
 mod small;

@@ -14,6 +14,11 @@ const HALF: f64 = 4.0;
 
 /// Random triangles and axis-parallel rectangles with corners in [-4, 4]^3, an object each.
 fn scene(random: &mut Random, count: usize) -> Scene {
+    scene_on(random, count, 1.0)
+}
+
+/// The same on a grid of any step.
+pub(crate) fn scene_on(random: &mut Random, count: usize, step: f64) -> Scene {
     let coordinate = |random: &mut Random| random.index(9) as f64 - HALF;
     let objects = (0..count)
         .map(|i| {
@@ -57,7 +62,7 @@ fn scene(random: &mut Random, count: usize) -> Scene {
     };
     let reach = ([-6.0; 3], [6.0; 3]);
     let (scene, _) = SceneBuilder::new(input)
-        .grid(Some(1.0))
+        .grid(Some(step))
         .cells_box(Some(reach))
         .build()
         .expect("a scene");
