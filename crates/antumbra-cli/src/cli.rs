@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::commands::{bake, completions, demo, r#gen, man, map, pair, pvs, ray};
+use crate::commands::{bake, completions, demo, r#gen, man, map, pair, pvs, ray, shadow};
 use crate::output::Output;
 use crate::values::positive;
 
@@ -23,6 +23,7 @@ Examples:
   antumbra pvs query house.pvs --at 3.5,-2,1.6
   antumbra pair house.glb --from lamp --to table
   antumbra map house.glb --eye -12,-9,6 --to 4,3,2 --svg house.svg
+  antumbra shadow house.glb --light 3,2,2.4 -o lit.glb
 
 Exit codes: 0 done; 2 wrong usage; 3 damaged or impossible content; 4 a path that cannot be
 read or written; 5 stopped, with what was finished saved.";
@@ -78,6 +79,8 @@ pub(crate) enum Command {
     Ray(ray::RayArgs),
     /// Draw what is seen from a point: hidden-line drawings, solid angles, the visibility map
     Map(map::MapArgs),
+    /// Cut every polygon into lit and shadowed parts; find where soft shadows begin and end
+    Shadow(shadow::ShadowArgs),
     /// Make a synthetic scene
     Gen(r#gen::GenArgs),
     /// Bake, check and draw a small office that is built in

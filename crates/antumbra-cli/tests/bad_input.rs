@@ -44,6 +44,7 @@ fn scenes_that_cannot_be_read() {
             format!("pair {scene} --from 0 --to 1"),
             format!("ray {scene} --from 0,0,0 --to 1,1,1"),
             format!("map {scene} --eye 0,0,9 -o out.json"),
+            format!("shadow {scene} --light 0,0,9 -o out.glb"),
         ] {
             let run = folder.run(&line);
             let text = run.failure(code);
@@ -103,6 +104,10 @@ fn cells_and_names_that_make_no_sense() {
             "object 7 does not exist",
         ),
         ("pair a.obj --from square:9 --to 0", 3, "numbered from 0"),
+        ("shadow a.obj --light lamp --approximate", 3, "lamp"),
+        ("shadow a.obj --light square", 2, "--approximate"),
+        ("shadow a.obj --light 0,0,9 -o gone/a.glb", 4, "gone/a.glb"),
+        ("shadow a.obj --light 1e9,0,3 --grid 0.01", 3, "grid"),
         ("gen walls -o gone/walls.glb", 4, "gone/walls.glb"),
         ("demo -o a.obj/x", 4, "a.obj"),
     ] {

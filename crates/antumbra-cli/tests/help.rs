@@ -4,7 +4,7 @@ mod tool;
 
 use tool::{Folder, assert_snapshot};
 
-const COMMANDS: [&str; 19] = [
+const COMMANDS: [&str; 20] = [
     "",
     "bake",
     "pvs",
@@ -17,6 +17,7 @@ const COMMANDS: [&str; 19] = [
     "pair",
     "ray",
     "map",
+    "shadow",
     "gen",
     "gen random-triangles",
     "gen walls",
@@ -92,6 +93,15 @@ fn wrong_usage_is_one_sentence() {
         ("map a.glb --eye 0,0,0 --to 0,0,5", "up direction"),
         ("map a.glb --eye 0,0,0 --to 1,0,0 --fov 180", "180 degrees"),
         ("map a.glb --eye 0,0,0 --crease 181", "--crease"),
+        ("shadow a.glb", "--light"),
+        ("shadow a.glb --light 1,2", "three numbers"),
+        ("shadow a.glb --light 1,2,3 --approximate", "area lights"),
+        ("shadow a.glb --light 1,2,3 -o a.obj", ".glb or .json"),
+        ("shadow a.glb --light 1,2,3 --png a.png", "--eye"),
+        (
+            "shadow a.glb --light 1,2,3 --png a.png --eye 0,0,0 --to 0,0,0",
+            "no direction",
+        ),
         ("gen walls", "-o FILE.glb"),
         ("gen walls -o walls.stl", ".glb or .obj"),
         ("gen maze --rooms 0 -o m.glb", "0 is not in 1..=500"),

@@ -9,6 +9,7 @@ pub(crate) mod map;
 pub(crate) mod pair;
 pub(crate) mod pvs;
 pub(crate) mod ray;
+pub(crate) mod shadow;
 
 use crate::cli::{Cli, Command};
 use crate::failure::Failure;
@@ -23,6 +24,7 @@ pub(crate) fn run(cli: Cli) -> Result<(), Failure> {
         Command::Pair(args) => pair::run(&args, &global),
         Command::Ray(args) => ray::run(&args, &global),
         Command::Map(args) => map::run(&args, &global),
+        Command::Shadow(args) => shadow::run(&args, &global),
         Command::Gen(args) => r#gen::run(&args, &global),
         Command::Demo(args) => demo::run(&args, &global),
         Command::Completions(args) => completions::run(&args),

@@ -30,6 +30,18 @@ impl Camera {
         }
     }
 
+    /// Looks from a point along the last of three axes (right, up, forward), with a full vertical
+    /// angle in radians.
+    pub(super) fn looking(eye: V3, axes: [V3; 3], fov: f64, size: [f64; 2]) -> Self {
+        Self {
+            eye,
+            axes,
+            scale: size[1] / 2.0 / (fov / 2.0).tan(),
+            center: [size[0] / 2.0, size[1] / 2.0],
+            parallel: false,
+        }
+    }
+
     /// Looks along a direction so that some points just fit the frame; `margin` is the free share.
     pub(super) fn framing(points: &[V3], direction: V3, size: [f64; 2], margin: f64) -> Self {
         let forward = unit(direction);

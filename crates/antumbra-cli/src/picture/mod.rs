@@ -1,4 +1,4 @@
-//! Pictures of a baked cell: a plan as SVG and a perspective view as PNG.
+//! Pictures: of a baked cell a plan as SVG and a perspective view as PNG; of a light what it reaches.
 //!
 //! Visible objects are in color, hidden ones grey, the cell is marked. If there is a roof above
 //! the cell, everything above the cell is cut away, so that one looks inside.
@@ -7,6 +7,7 @@ mod camera;
 mod color;
 mod encode;
 mod facing;
+mod light;
 mod perspective;
 mod plan;
 mod raster;
@@ -14,6 +15,7 @@ mod section;
 mod vector;
 
 pub(crate) use encode::png;
+pub(crate) use light::{Lamp, LightPicture, LitFace, light_picture};
 pub(crate) use perspective::{PerspectiveOptions, perspective};
 pub(crate) use plan::plan;
 

@@ -30,7 +30,7 @@ impl Default for PerspectiveOptions {
 }
 
 /// Pixels are computed as squares of this many samples a side.
-const SAMPLES: usize = 2;
+pub(super) const SAMPLES: usize = 2;
 
 /// Renders the view: rows of red, green and blue bytes, from the top.
 pub(crate) fn perspective(subject: &Subject, options: &PerspectiveOptions) -> Vec<u8> {
@@ -197,6 +197,8 @@ fn draw_cell(subject: &Subject, camera: &Camera, buffer: &ItemBuffer, pixels: &m
             buffer,
             pixels,
             [i, j].map(|i| corner(subject.cell, i)),
+            ACCENT,
+            1.4,
         );
     }
 }
@@ -206,9 +208,17 @@ fn corner([min, max]: [V3; 2], i: usize) -> V3 {
     std::array::from_fn(|k| if i >> k & 1 == 1 { max[k] } else { min[k] })
 }
 
-fn draw_line(camera: &Camera, buffer: &ItemBuffer, pixels: &mut [Rgb], [a, b]: [V3; 2]) {
+/// A line in a color, its half width in pixels; faint where something is in front of it.
+pub(super) fn draw_line(
+    camera: &Camera,
+    buffer: &ItemBuffer,
+    pixels: &mut [Rgb],
+    [a, b]: [V3; 2],
+    color: Rgb,
+    half_width: f64,
+) {
     // A ribbon that faces the camera, as wide as the line.
-    let radius = 1.4 * SAMPLES as f64;
+    let radius = half_width * SAMPLES as f64;
     if camera.in_front(a) <= 0.0 || camera.in_front(b) <= 0.0 {
         return;
     }
@@ -238,14 +248,14 @@ fn draw_line(camera: &Camera, buffer: &ItemBuffer, pixels: &mut [Rgb], [a, b]: [
             if seen.insert(i) {
                 // Lines on a surface count as in front of it.
                 let free = at[2] * (1.0 + 2e-3) >= buffer.keys[i];
-                pixels[i] = mix(pixels[i], ACCENT, if free { 1.0 } else { 0.3 });
+                pixels[i] = mix(pixels[i], color, if free { 1.0 } else { 0.3 });
             }
         }
     }
 }
 
 /// Averages the samples of each pixel.
-fn shrink(samples: &[Rgb], [width, height]: [usize; 2]) -> Vec<u8> {
+pub(super) fn shrink(samples: &[Rgb], [width, height]: [usize; 2]) -> Vec<u8> {
     let mut out = Vec::with_capacity(width * height * 3);
     for row in 0..height {
         for column in 0..width {

@@ -110,6 +110,8 @@ impl Shadows {
     #[must_use]
     pub fn area(&self, lighting: Lighting) -> f64 {
         let of_kind = self.fragments.iter().filter(|f| f.lighting == lighting);
-        of_kind.map(Fragment::area).sum()
+        of_kind
+            .map(Fragment::area)
+            .fold(0.0, |sum, area| sum + area)
     }
 }

@@ -173,25 +173,26 @@ fn write(args: &MapArgs, scene: &Scene, map: &VisibilityMap) -> Result<(), Failu
     Ok(())
 }
 
-/// Says which polygons the viewpoint lies in the plane of, if it touches them.
+/// Says if the viewpoint lies on a polygon.
 fn note_edge_on(args: &MapArgs, global: &Global, loaded: &Loaded) {
-    let scene = &loaded.scene;
-    let Ok(eye) = scene.grid().snap(args.eye.0) else {
-        return;
-    };
     if args.ortho {
         return;
     }
-    let place = antumbra::kernel::Aabb::new(eye, eye);
-    let on = scene
-        .polygons()
-        .find(|p| p.occludes && box_contact(p, &place) != BoxContact::Apart);
-    if let Some(polygon) = on {
-        let name = &scene.object(polygon.object).name;
+    if let Some(name) = touched(&loaded.scene, args.eye.0) {
         global.output().note(&format!(
             "note: the viewpoint lies on a polygon of `{name}`, which is seen edge-on and hides nothing"
         ));
     }
+}
+
+/// The name of an object with an occluder on which a point lies, once snapped.
+pub(crate) fn touched(scene: &Scene, point: [f64; 3]) -> Option<&str> {
+    let point = scene.grid().snap(point).ok()?;
+    let place = antumbra::kernel::Aabb::new(point, point);
+    let on = scene
+        .polygons()
+        .find(|p| p.occludes && box_contact(p, &place) != BoxContact::Apart)?;
+    Some(&scene.object(on.object).name)
 }
 
 /// The keys that scripts rely on.
