@@ -237,6 +237,12 @@ impl SeenPolygons {
         }
         std::mem::replace(&mut self.rounds[id.index()], self.round) != self.round
     }
+
+    /// Whether a polygon was inserted since the set was last emptied.
+    #[must_use]
+    pub fn contains(&self, id: PolygonId) -> bool {
+        self.round > 0 && self.rounds.get(id.index()) == Some(&self.round)
+    }
 }
 
 /// What must hold for a tree over some boxes and shapes; the first violation as a sentence.

@@ -12,7 +12,6 @@ mod view;
 
 use std::collections::BinaryHeap;
 
-use antumbra_kernel::Aabb;
 use antumbra_lines::{Leaf, LineSpace, Occluder, OcclusionTree, Visibility};
 use antumbra_scene::{KdBox, KdNode, PolygonId, Scene, SeenPolygons};
 
@@ -148,6 +147,29 @@ pub fn sweep_in_order<V: View>(scene: &Scene, mut view: V, order: &[PolygonId]) 
     }
 }
 
+/// All occluders in the order in which a depth-first sweep without tests comes to them: approximately
+/// front to back.
+pub fn front_to_back<V: View>(scene: &Scene, view: &V) -> Vec<PolygonId> {
+    let kd = scene.kd();
+    let (mut order, mut seen) = (Vec::new(), SeenPolygons::new());
+    let mut stack = vec![kd.root()];
+    while let Some(here) = stack.pop() {
+        let node = kd.nodes()[here.node as usize];
+        let (Some([below, above]), KdNode::Inner { axis, at, .. }) = (kd.children(&here), node)
+        else {
+            let items = kd.items(here.node).iter().copied();
+            order.extend(items.filter(|&id| scene.polygon(id).occludes && seen.insert(id)));
+            continue;
+        };
+        if view.lower_first(usize::from(axis), at) {
+            stack.extend([above, below]);
+        } else {
+            stack.extend([below, above]);
+        }
+    }
+    order
+}
+
 struct Sweeper<'s, V: View> {
     scene: &'s Scene,
     twins: &'s Twins,
@@ -203,15 +225,22 @@ impl<V: View> Sweeper<'_, V> {
         if self.options.test == BoxTest::Never {
             return true;
         }
-        if let KdNode::Leaf { count: 0, .. } = self.scene.kd().nodes()[here.node as usize] {
-            return false;
+        if let KdNode::Leaf { .. } = self.scene.kd().nodes()[here.node as usize] {
+            let items = self.scene.kd().items(here.node);
+            let scene = self.scene;
+            let old = |id| self.seen.contains(id) || !scene.polygon(id).occludes;
+            if items.iter().all(|&id| old(id)) {
+                // Nothing new in it, seen or not: it counts as opened, unless it is empty.
+                self.work.leaves_opened += u64::from(!items.is_empty());
+                return false;
+            }
         }
         self.work.nodes_tested += 1;
         let mark = self.view.mark();
         let state = match self.view.region(&here.bounds) {
             Region::Touching => Visibility::Partial,
             Region::Nowhere => Visibility::Invisible,
-            Region::Piece(piece) => self.test(&here.bounds, piece),
+            Region::Piece(piece) => self.test(here, piece),
         };
         self.view.rewind(mark);
         let opens = state != Visibility::Invisible;
@@ -219,7 +248,8 @@ impl<V: View> Sweeper<'_, V> {
         opens
     }
 
-    fn test(&mut self, bounds: &Aabb, piece: <V::Space as LineSpace>::Piece) -> Visibility {
+    fn test(&mut self, here: &KdBox, piece: <V::Space as LineSpace>::Piece) -> Visibility {
+        let bounds = &here.bounds;
         let (polygons, scene) = (&self.polygons, self.scene);
         let sides = self.view.sides();
         let hidden = |old: Occluder| {
@@ -241,8 +271,12 @@ impl<V: View> Sweeper<'_, V> {
         }
         if self.options.test == BoxTest::Conservative {
             let state = self.tree.test_without_splitting(space, &piece, hidden);
-            LineSpace::discard(space, piece);
-            return state;
+            // An exact test of a leaf costs less than to insert what it holds.
+            let leaf = matches!(scene.kd().nodes()[here.node as usize], KdNode::Leaf { .. });
+            if state == Visibility::Invisible || !leaf {
+                LineSpace::discard(space, piece);
+                return state;
+            }
         }
         self.tree.test_region(space, piece, |_, _, old| {
             if hidden(old) {

@@ -2,5 +2,6 @@
 
 mod oracle;
 mod real;
+mod sensitivity;
 mod shadow;
 mod small;
