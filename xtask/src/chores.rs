@@ -147,7 +147,47 @@ pub(crate) fn figures() -> Result<(), Failure> {
         ];
         run(&format!("figure {example}"), &mut cargo(&arguments))?;
     }
+    gallery(&root())
+}
+
+/// Runs the commands of `docs/gallery.md` in a folder below `target` and keeps the pictures.
+fn gallery(root: &Path) -> Result<(), Failure> {
+    let failed = |cause: std::io::Error| Failure {
+        step: "gallery".to_owned(),
+        why: cause.to_string(),
+        counts: None,
+    };
+    let page = std::fs::read_to_string(root.join("docs/gallery.md")).map_err(failed)?;
+    let build = ["build", "--release", "--package", "antumbra-cli"];
+    run("the binary of the gallery", &mut cargo(&build))?;
+    let binary = root.join("target/release/antumbra");
+    let (work, kept) = (root.join("target/gallery"), root.join("docs/gallery"));
+    std::fs::create_dir_all(&work).map_err(failed)?;
+    std::fs::create_dir_all(&kept).map_err(failed)?;
+    for line in page.lines().filter_map(|l| l.strip_prefix("antumbra ")) {
+        let mut command = Command::new(&binary);
+        command.args(words(line)).current_dir(&work);
+        run(line, &mut command)?;
+    }
+    for name in names_in(&work) {
+        if name.ends_with(".svg") || name.ends_with(".png") {
+            std::fs::copy(work.join(&name), kept.join(&name)).map_err(failed)?;
+        }
+    }
     Ok(())
+}
+
+/// The words of a command line; what stands between double quotes is one word.
+fn words(line: &str) -> Vec<String> {
+    let mut words = Vec::new();
+    for (i, part) in line.split('"').enumerate() {
+        if i % 2 == 1 {
+            words.push(part.to_owned());
+        } else {
+            words.extend(part.split_whitespace().map(str::to_owned));
+        }
+    }
+    words
 }
 
 fn figure_examples(root: &Path) -> Vec<(String, String)> {

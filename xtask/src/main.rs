@@ -22,7 +22,8 @@ usage: cargo xtask CHORE
   lint            format, clippy and tidy only
   tidy            the rules of the house only (see ARCHITECTURE.md)
   bench [ARGS]    all benchmarks; ARGS go to `cargo bench`
-  figures         run every example whose name starts with `figure_`, which rewrites docs/figures";
+  figures         run every example whose name starts with `figure_`, which rewrites docs/figures,
+                  and the commands of docs/gallery.md, which rewrites docs/gallery";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -2,15 +2,16 @@
 
 use std::collections::BTreeSet;
 
+use antumbra_kernel::{Plane, Point};
 use antumbra_lines::{Cone3, ExactRay, Leaf, LineSpace as _, Occluder, Ray3, Space3};
-use antumbra_scene::{PolygonId, Scene};
+use antumbra_scene::{PolygonId, PolygonRef, Scene};
 use antumbra_sweep::occlusion::{Sweep, Twins, View};
 
 use super::angle::{flat_area, solid_angle, unit};
 use super::cells::Cells;
 use super::classify::{Classifier, EdgeClass, Label};
 use super::mesh::{Mesh, merge_cells};
-use super::view::{Seen, main_axis};
+use super::view::{Seen, main_axis, meet_from};
 use super::walls::{OUTSIDE, Walls};
 use super::{
     Dissolve, FaceKind, HalfEdge, MapEdge, MapFace, MapOptions, MapVertex, MapWork, VertexKind,
@@ -72,6 +73,31 @@ pub(super) fn build<V: View<Space = Space3>>(
         &mut map,
     );
     map
+}
+
+/// The box around the part of a polygon that a cell shows, with a grid step to spare: the corners lie
+/// on the polygon, so they are off by 2^-24 steps at most.
+fn shown_box(
+    space: &Space3,
+    eye: Point,
+    cells: &Cells,
+    cell: usize,
+    plane: &Plane,
+) -> [[f64; 3]; 2] {
+    let corners = cells
+        .range(cell)
+        .map(|c| meet_from(eye, &space.exact(cells.ray(c)), plane));
+    corners.fold([[f64::MAX; 3], [f64::MIN; 3]], |[low, high], p| {
+        let low = std::array::from_fn(|k| low[k].min(p[k] - 1.0));
+        [low, std::array::from_fn(|k| high[k].max(p[k] + 1.0))]
+    })
+}
+
+fn apart([low, high]: [[f64; 3]; 2], polygon: &PolygonRef<'_>) -> bool {
+    (0..3).any(|k| {
+        let mut at = polygon.corners.iter().map(|c| c.to_f64()[k]);
+        at.clone().all(|c| c < low[k]) || at.all(|c| c > high[k])
+    })
 }
 
 fn dissolves(scene: &Scene, label: &Label, dissolve: Dissolve) -> bool {
@@ -375,9 +401,21 @@ fn coincident<V: View<Space = Space3>>(
             continue;
         };
         let owner = sweep.polygons[i as usize];
+        if twins.of(owner).is_empty() {
+            continue;
+        }
+        let plane = scene.polygon(owner).plane;
+        let space = sweep.view.space();
+        let shown = map
+            .view
+            .eye()
+            .map(|eye| shown_box(space, eye, cells, cell, plane));
         for &twin in twins.of(owner) {
             let pair = (face_of[cell], twin);
             if twin < owner || found.contains(&pair) {
+                continue;
+            }
+            if shown.is_some_and(|shown| apart(shown, &scene.polygon(twin))) {
                 continue;
             }
             let mark = sweep.view.mark();

@@ -150,7 +150,7 @@ impl Seen {
     /// Where a line meets a plane, in scene units.
     pub(super) fn meet(&self, scene: &Scene, ray: &ExactRay, plane: &Plane) -> [f64; 3] {
         let d = match *self {
-            Self::Point(eye) => return meet_from(scene, eye, ray, plane),
+            Self::Point(eye) => return scene.grid().to_scene_f64(meet_from(eye, ray, plane)),
             Self::Parallel(d) => d,
         };
         let from = Self::on_line(d, ray.to_f64());
@@ -163,13 +163,12 @@ impl Seen {
     }
 }
 
-/// Where a ray from a point meets a plane that does not hold the point, in scene units. The way
+/// Where a ray from a point meets a plane that does not hold the point, in grid steps. The way
 /// there is within a relative error of 2^-50, however flat the ray meets the plane.
-pub(crate) fn meet_from(scene: &Scene, eye: Point, ray: &ExactRay, plane: &Plane) -> [f64; 3] {
+pub(crate) fn meet_from(eye: Point, ray: &ExactRay, plane: &Plane) -> [f64; 3] {
     let t = -(plane.evaluate(eye) as f64) / ray.dot(plane.normal);
     let (from, along) = (eye.to_f64(), ray.to_f64());
-    let p = std::array::from_fn(|k| from[k] + t * along[k]);
-    scene.grid().to_scene_f64(p)
+    std::array::from_fn(|k| from[k] + t * along[k])
 }
 
 pub(super) fn main_axis(direction: [i32; 3]) -> usize {

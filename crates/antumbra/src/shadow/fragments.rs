@@ -141,7 +141,10 @@ impl Caster<'_> {
     /// The corners of a part in scene units.
     fn corners(&self, polygon: &PolygonRef<'_>, cone: &Cone3) -> Vec<[f64; 3]> {
         let space = self.sweep.view.space_ref();
-        let at = |ray| meet_from(self.scene, self.light, &space.exact(ray), polygon.plane);
+        let at = |ray| {
+            let p = meet_from(self.light, &space.exact(ray), polygon.plane);
+            self.scene.grid().to_scene_f64(p)
+        };
         let mut corners: Vec<[f64; 3]> = space.rays(cone).map(at).collect();
         // Cones turn about the way from the light.
         if polygon.plane.side(self.light).is_positive() {
