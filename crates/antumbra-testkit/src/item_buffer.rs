@@ -19,6 +19,14 @@ pub struct Camera {
     pub size: [usize; 2],
 }
 
+impl Camera {
+    /// The direction through the middle of a pixel, not of length one.
+    #[must_use]
+    pub fn through(&self, column: usize, row: usize) -> [f64; 3] {
+        Rays::of(self).through(column, row)
+    }
+}
+
 /// For each pixel the owners seen through its middle, sorted; row by row from the top.
 #[derive(Clone, Debug)]
 pub struct ItemBuffer {

@@ -96,18 +96,6 @@ impl ParallelView {
     pub fn direction(&self) -> [i32; 3] {
         self.direction
     }
-
-    /// The corners of the rectangle, as rays.
-    #[must_use]
-    pub fn frame_edges(&self) -> &[[i64; 3]] {
-        &self.frame
-    }
-
-    /// The line space, to read.
-    #[must_use]
-    pub fn space_ref(&self) -> &Space3 {
-        &self.space
-    }
 }
 
 impl View for ParallelView {

@@ -66,12 +66,6 @@ impl PointView {
         self.eye
     }
 
-    /// The edges of the frustum; none for the whole sphere.
-    #[must_use]
-    pub fn frame_edges(&self) -> &[[i64; 3]] {
-        &self.frame
-    }
-
     /// The line space, to read.
     #[must_use]
     pub fn space_ref(&self) -> &Space3 {

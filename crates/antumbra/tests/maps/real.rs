@@ -4,6 +4,7 @@ use antumbra::map::{Dissolve, MapOptions, Mapper, Viewpoint};
 use antumbra::scene::synth::{TriangleParams, random_triangles};
 use antumbra::scene::{PolygonId, Scene, SceneBuilder};
 use antumbra_testkit::environment::{data, long, skip};
+use antumbra_testkit::item_buffer::{Camera, ItemBuffer};
 use antumbra_testkit::random::Random;
 use antumbra_testkit::ray_caster::{RayCaster, Triangle};
 use dashu_int::IBig;
@@ -112,9 +113,12 @@ fn check_views(name: &str, scene: &Scene, eyes: &[[f64; 3]]) {
         let grid = scene.grid().snap(eye).expect("on the grid");
         let hits = FirstHits::new(scene, grid);
         let beside = check_beside(&map, &hits, exact());
-        let rays = check_rays(&format!("{name} {i}"), &map, &caster, &hits, grid.to_f64());
+        let view = format!("{name} {i}");
+        let shown = || Shown::new(&view, &map, &hits);
+        let rays = check_rays(shown(), &caster, grid.to_f64());
+        let pixels = check_buffers(shown(), &caster, grid.to_f64());
         note(&format!(
-            "{name} {i}: {beside} exact directions, {rays} rays"
+            "{view}: {beside} exact directions, {rays} rays, {pixels} pixels"
         ));
         let dissolved = MapOptions::default();
         let map = mapper
@@ -226,38 +230,46 @@ impl Bins {
     }
 }
 
-/// Random rays whose first hit must be the owner of the one cell that holds them well inside.
-fn check_rays(
-    name: &str,
-    map: &antumbra::map::VisibilityMap,
-    caster: &RayCaster,
-    hits_of: &FirstHits,
-    eye: [f64; 3],
-) -> usize {
-    let directions: Vec<[f64; 3]> = map.vertices().iter().map(|v| v.ray).collect();
-    let cells = cells(map);
-    let exact_rays = directions_of(map);
-    let shapes: Vec<Shape> = cells.iter().map(|c| Shape::new(c, &directions)).collect();
-    let bins = Bins::new(&shapes);
-    let mut random = Random::new(7);
-    let (mut checked, mut slipped) = (0, 0);
-    for _ in 0..rays() {
-        let z = 2.0 * random.unit() - 1.0;
-        let turn = random.unit() * std::f64::consts::TAU;
-        let r = (1.0 - z * z).sqrt();
-        let d = [r * turn.cos(), r * turn.sin(), z];
+/// A map, ready to be asked what it shows in a direction.
+struct Shown<'a> {
+    name: &'a str,
+    cells: Vec<Cell>,
+    exact: Vec<Direction>,
+    shapes: Vec<Shape>,
+    bins: Bins,
+    hits: &'a FirstHits,
+    checked: usize,
+    slipped: usize,
+}
+
+impl<'a> Shown<'a> {
+    fn new(name: &'a str, map: &antumbra::map::VisibilityMap, hits: &'a FirstHits) -> Self {
+        let directions: Vec<[f64; 3]> = map.vertices().iter().map(|v| v.ray).collect();
+        let cells = cells(map);
+        let shapes: Vec<Shape> = cells.iter().map(|c| Shape::new(c, &directions)).collect();
+        Self {
+            name,
+            exact: directions_of(map),
+            bins: Bins::new(&shapes),
+            cells,
+            shapes,
+            hits,
+            checked: 0,
+            slipped: 0,
+        }
+    }
+
+    /// The owner of the one cell that holds a direction well inside must be among those seen.
+    fn check(&mut self, d: [f64; 3], owners: &[u32]) {
+        let d = unit(d);
         let inside = |s: &&u32| {
-            let shape = &shapes[**s as usize];
+            let shape = &self.shapes[**s as usize];
             shape.normals.iter().all(|n| dot(*n, d) > NEAR)
         };
-        let Some(&cell) = bins.at(d).iter().find(inside) else {
-            continue;
+        let Some(&cell) = self.bins.at(d).iter().find(inside) else {
+            return;
         };
-        let hits = caster.hits(eye, d, (0.0, f64::INFINITY));
-        let limit = hits.first().map_or(0.0, |h| h.t * (1.0 + 1e-9));
-        let first = hits.iter().take_while(|h| h.t <= limit);
-        let owners: Vec<u32> = first.map(|h| h.owner).collect();
-        let owner = shapes[cell as usize].owner;
+        let owner = self.shapes[cell as usize].owner;
         let agrees = match owner {
             Some(id) => owners.contains(&id.0),
             None => owners.is_empty(),
@@ -265,25 +277,72 @@ fn check_rays(
         if !agrees {
             // Floats may slip between triangles, or lose a hit: big integers have the last word.
             let exact = d.map(|c| IBig::from((c * (1_u64 << 60) as f64) as i64));
-            if !holds(&cells[cell as usize], &exact_rays, &exact) {
+            if !holds(&self.cells[cell as usize], &self.exact, &exact) {
                 // The float border of a cell with a very short edge points anywhere.
-                continue;
+                return;
             }
-            let first = hits_of.along(&exact).first().copied();
-            assert_eq!(first, owner, "{name}: {d:?}: rays say {owners:?}");
-            slipped += 1;
+            let first = self.hits.along(&exact).first().copied();
+            assert_eq!(first, owner, "{}: {d:?}: rays say {owners:?}", self.name);
+            self.slipped += 1;
         }
-        checked += 1;
+        self.checked += 1;
     }
-    assert!(
-        slipped * 10_000 <= checked,
-        "{name}: rays were wrong {slipped} times"
-    );
-    assert!(
-        checked > rays() / 2,
-        "{name}: only {checked} rays are off the edges"
-    );
-    checked
+
+    /// How many directions of so many were checked: at least half of them.
+    fn done(self, of: usize) -> usize {
+        let (name, checked, slipped) = (self.name, self.checked, self.slipped);
+        assert!(
+            slipped * 10_000 <= checked,
+            "{name}: rays were wrong {slipped} times"
+        );
+        assert!(
+            checked > of / 2,
+            "{name}: only {checked} rays are off the edges"
+        );
+        checked
+    }
+}
+
+/// Random rays.
+fn check_rays(mut shown: Shown<'_>, caster: &RayCaster, eye: [f64; 3]) -> usize {
+    let mut random = Random::new(7);
+    for _ in 0..rays() {
+        let z = 2.0 * random.unit() - 1.0;
+        let turn = random.unit() * std::f64::consts::TAU;
+        let r = (1.0 - z * z).sqrt();
+        let d = [r * turn.cos(), r * turn.sin(), z];
+        let hits = caster.hits(eye, d, (0.0, f64::INFINITY));
+        let limit = hits.first().map_or(0.0, |h| h.t * (1.0 + 1e-9));
+        let first = hits.iter().take_while(|h| h.t <= limit);
+        let owners: Vec<u32> = first.map(|h| h.owner).collect();
+        shown.check(d, &owners);
+    }
+    shown.done(rays())
+}
+
+/// An item buffer on each side of a cube around the viewpoint.
+fn check_buffers(mut shown: Shown<'_>, caster: &RayCaster, eye: [f64; 3]) -> usize {
+    let side = if long() { 512 } else { 64 };
+    for face in 0..6 {
+        let mut toward = eye;
+        toward[face / 2] += if face % 2 == 0 { 1.0 } else { -1.0 };
+        let mut up = [0.0; 3];
+        up[(face / 2 + 1) % 3] = 1.0;
+        let camera = Camera {
+            eye,
+            toward,
+            up,
+            angle: 90.0,
+            size: [side, side],
+        };
+        let buffer = ItemBuffer::render(caster, &camera, 1e-9);
+        for row in 0..side {
+            for column in 0..side {
+                shown.check(camera.through(column, row), buffer.pixel(column, row));
+            }
+        }
+    }
+    shown.done(6 * side * side)
 }
 
 /// Whether a convex cell holds a direction strictly: by big integers.

@@ -75,7 +75,9 @@ Examples:
   antumbra map house.glb --eye -12,-9,6 --to 4,3,2 --svg house.svg --hidden
   antumbra map house.glb --eye 0,0,20 --to 0,0,0 --up-is 0,1,0 --ortho --dxf plan.dxf
 
-A polygon in whose plane the viewpoint lies is seen edge-on: it is not in the map.";
+A polygon in whose plane the viewpoint lies is seen edge-on: it is not in the map. What lets lines
+through (--transparent, --occluders, materials that blend) is not in the map, either: the map shows
+what is behind it.";
 
 /// Which edges to remove.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
