@@ -10,6 +10,7 @@
 mod clean;
 mod cover;
 mod error;
+mod fuse;
 mod merge;
 mod near;
 mod plane;
@@ -21,6 +22,7 @@ use antumbra_kernel::{Aabb, Grid, Plane, Point};
 use rayon::prelude::*;
 
 pub use error::BuildError;
+pub use fuse::{FusedOccluder, fuse_occluders};
 
 use crate::input::{ObjectInput, OccluderPolicy, SceneInput};
 use crate::kd::{KdHeuristic, KdTree, Shape};

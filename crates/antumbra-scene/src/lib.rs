@@ -12,7 +12,7 @@ mod scene;
 pub mod synth;
 mod target_tree;
 
-pub use builder::{BuildError, SceneBuilder};
+pub use builder::{BuildError, FusedOccluder, SceneBuilder, fuse_occluders};
 pub use cells::{
     CellError, CellKind, CellSpec, CellSpecError, MAX_CELLS, NamedBox, ViewCell, make_cells,
 };

@@ -5,6 +5,7 @@
 //! potentially visible sets, [`pair`] for two polygons, objects or points, [`ray`](mod@ray) for one
 //! line, [`map`] for everything seen from a point, [`shadow`] for what a light reaches.
 
+pub mod cull;
 pub mod map;
 pub mod pair;
 pub mod ray;

@@ -1,0 +1,371 @@
+//! The spatial hierarchy of culling: the kD-tree of the scene with tight boxes, pruned to leaves that
+//! are worth a test, and what stands in each leaf.
+//!
+//! A leaf lists *items*: the box of what one object has in the leaf. An object is visible if one of
+//! its items is; the union of the items of an object covers it.
+
+use antumbra_kernel::Aabb;
+use antumbra_scene::{KdBox, KdNode, KdTree, PolygonId, Scene};
+
+use super::bound::dot;
+use super::faces::Faces;
+use super::tree::Block;
+
+/// A closed box in grid steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Bounds {
+    pub low: [f64; 3],
+    pub high: [f64; 3],
+}
+
+impl Bounds {
+    const EMPTY: Self = Self {
+        low: [f64::INFINITY; 3],
+        high: [f64::NEG_INFINITY; 3],
+    };
+
+    pub(super) fn of(b: &Aabb) -> Self {
+        Self {
+            low: b.min.to_f64(),
+            high: b.max.to_f64(),
+        }
+    }
+
+    pub(super) fn around(points: &[[f64; 3]]) -> Self {
+        points.iter().fold(Self::EMPTY, |b, p| Self {
+            low: std::array::from_fn(|k| b.low[k].min(p[k])),
+            high: std::array::from_fn(|k| b.high[k].max(p[k])),
+        })
+    }
+
+    fn union(&self, other: &Self) -> Self {
+        Self {
+            low: std::array::from_fn(|k| self.low[k].min(other.low[k])),
+            high: std::array::from_fn(|k| self.high[k].max(other.high[k])),
+        }
+    }
+
+    /// This box relative to an eye.
+    #[inline]
+    pub(super) fn seen_from(&self, eye: [f64; 3]) -> Block {
+        Block {
+            center: std::array::from_fn(|k| (self.low[k] + self.high[k]) * 0.5 - eye[k]),
+            half: std::array::from_fn(|k| (self.high[k] - self.low[k]) * 0.5),
+        }
+    }
+
+    /// The squared distance of a point; zero inside.
+    pub(super) fn squared_distance(&self, p: [f64; 3]) -> f64 {
+        let d: [f64; 3] =
+            std::array::from_fn(|k| (self.low[k] - p[k]).max(p[k] - self.high[k]).max(0.0));
+        dot(d, d)
+    }
+
+    fn meet(&self, other: &Self) -> Self {
+        Self {
+            low: std::array::from_fn(|k| self.low[k].max(other.low[k])),
+            high: std::array::from_fn(|k| self.high[k].min(other.high[k])),
+        }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        (0..3).any(|k| self.low[k] > self.high[k])
+    }
+}
+
+/// What one object has in a leaf.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Item {
+    pub object: u32,
+    pub bounds: Bounds,
+    /// Its polygons, in [`Hierarchy::polygons`].
+    pub first: u32,
+    pub count: u32,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HierarchyNode {
+    /// Around all that is in the node.
+    pub bounds: Bounds,
+    /// The node of the kD-tree.
+    pub kd: KdBox,
+    /// The plane between the children.
+    pub axis: u8,
+    pub at: f64,
+    /// The node above; the root's own number for the root.
+    pub parent: u32,
+    /// Lower and upper child; none for a leaf.
+    pub children: Option<[u32; 2]>,
+    /// Items of a leaf.
+    pub items: (u32, u32),
+    /// Occluders of a leaf, the largest first, in [`Hierarchy::occluders`].
+    pub occluders: (u32, u32),
+    /// The objects in the node, in [`Hierarchy::objects`]; none if they are many.
+    pub objects: Option<(u32, u32)>,
+    /// How many polygons are in the leaves below, at most.
+    pub cost: u32,
+}
+
+/// See the module.
+#[derive(Default)]
+pub(super) struct Hierarchy {
+    /// Parents before children; the first is the root. Empty for a scene without polygons.
+    pub nodes: Vec<HierarchyNode>,
+    pub items: Vec<Item>,
+    pub polygons: Vec<u32>,
+    pub occluders: Vec<u32>,
+    pub objects: Vec<u32>,
+    /// The node made of a kD node; for one that was pruned, the leaf above it.
+    pub of_kd: Vec<u32>,
+}
+
+/// A node with at most so many objects lists them.
+const FEW: usize = 12;
+
+impl Hierarchy {
+    /// Prunes the kD-tree of a scene to leaves of about `leaf_cost` polygons.
+    pub(super) fn new(
+        scene: &Scene,
+        polygons: &Faces,
+        of_polygon: &[(u32, u32)],
+        occluders: &Faces,
+        leaf_cost: u32,
+    ) -> Self {
+        let kd = scene.kd();
+        let mut hierarchy = Self {
+            of_kd: vec![u32::MAX; kd.nodes().len()],
+            ..Self::default()
+        };
+        if scene.polygon_count() == 0 {
+            return hierarchy;
+        }
+        let mut builder = Builder {
+            scene,
+            polygons,
+            of_polygon,
+            leaf_cost,
+            costs: costs(kd),
+            out: &mut hierarchy,
+        };
+        builder.node(kd.root(), 0);
+        hierarchy.hang(occluders);
+        hierarchy
+    }
+
+    /// The leaf whose cell holds a point; none outside.
+    pub(super) fn leaf_at(&self, p: [f64; 3]) -> Option<u32> {
+        let root = self.nodes.first()?;
+        let cell = Bounds::of(&root.kd.bounds);
+        if (0..3).any(|k| p[k] < cell.low[k] || p[k] > cell.high[k]) {
+            return None;
+        }
+        let mut node = 0;
+        while let Some([lower, upper]) = self.nodes[node as usize].children {
+            let n = &self.nodes[node as usize];
+            node = if p[n.axis as usize] < n.at {
+                lower
+            } else {
+                upper
+            };
+        }
+        Some(node)
+    }
+
+    /// Lists each occluder in the leaves whose box its own box meets.
+    fn hang(&mut self, occluders: &Faces) {
+        let mut lists: Vec<Vec<u32>> = vec![Vec::new(); self.nodes.len()];
+        for face in 0..occluders.len() as u32 {
+            let bounds = Bounds::around(occluders.get(face).corners);
+            let mut stack = vec![0_u32];
+            while let Some(node) = stack.pop() {
+                let n = &self.nodes[node as usize];
+                if Bounds::of(&n.kd.bounds).meet(&bounds).is_empty() {
+                    continue;
+                }
+                match n.children {
+                    Some(children) => stack.extend(children),
+                    None => lists[node as usize].push(face),
+                }
+            }
+        }
+        for (node, mut list) in lists.into_iter().enumerate() {
+            list.sort_by(|&a, &b| {
+                occluders
+                    .area(b)
+                    .total_cmp(&occluders.area(a))
+                    .then(a.cmp(&b))
+            });
+            let first = self.occluders.len() as u32;
+            self.nodes[node].occluders = (first, first + list.len() as u32);
+            self.occluders.extend(list);
+        }
+    }
+}
+
+struct Builder<'a> {
+    scene: &'a Scene,
+    polygons: &'a Faces,
+    /// The faces of each polygon of the scene.
+    of_polygon: &'a [(u32, u32)],
+    leaf_cost: u32,
+    costs: Vec<u32>,
+    out: &'a mut Hierarchy,
+}
+
+impl Builder<'_> {
+    /// Makes a node; returns its number and the objects below, sorted.
+    fn node(&mut self, here: KdBox, parent: u32) -> (u32, Vec<u32>) {
+        let number = self.out.nodes.len() as u32;
+        self.out.of_kd[here.node as usize] = number;
+        let cost = self.costs[here.node as usize];
+        self.out.nodes.push(HierarchyNode {
+            bounds: Bounds::EMPTY,
+            kd: here,
+            axis: 0,
+            at: 0.0,
+            parent,
+            children: None,
+            items: (0, 0),
+            occluders: (0, 0),
+            objects: None,
+            cost,
+        });
+        let kd = self.scene.kd();
+        let inner = kd.children(&here).filter(|_| cost > self.leaf_cost);
+        let objects = match (inner, kd.nodes()[here.node as usize]) {
+            (Some([below, above]), KdNode::Inner { axis, at, .. }) => {
+                let (lower, mut objects) = self.node(below, number);
+                let (upper, more) = self.node(above, number);
+                objects.extend(more);
+                objects.sort_unstable();
+                objects.dedup();
+                let bounds = self.out.nodes[lower as usize]
+                    .bounds
+                    .union(&self.out.nodes[upper as usize].bounds);
+                let node = &mut self.out.nodes[number as usize];
+                node.bounds = bounds;
+                node.axis = axis;
+                node.at = f64::from(at);
+                node.children = Some([lower, upper]);
+                objects
+            }
+            _ => self.leaf(number, here),
+        };
+        if objects.len() <= FEW {
+            let first = self.out.objects.len() as u32;
+            self.out.objects.extend(&objects);
+            let end = self.out.objects.len() as u32;
+            self.out.nodes[number as usize].objects = Some((first, end));
+        }
+        (number, objects)
+    }
+
+    /// Fills a leaf with the items of all kD leaves below.
+    fn leaf(&mut self, number: u32, here: KdBox) -> Vec<u32> {
+        let kd = self.scene.kd();
+        // Object, face, bounds.
+        let mut parts: Vec<(u32, u32, Bounds)> = Vec::new();
+        let mut stack = vec![here];
+        while let Some(node) = stack.pop() {
+            self.out.of_kd[node.node as usize] = number;
+            if let Some(children) = kd.children(&node) {
+                stack.extend(children);
+                continue;
+            }
+            let cell = Bounds::of(&node.bounds);
+            for &id in kd.items(node.node) {
+                let object = self.scene.polygon(id).object.0;
+                for face in self.faces(id) {
+                    if let Some(bounds) = clipped(self.polygons.get(face).corners, &cell) {
+                        parts.push((object, face, bounds));
+                    }
+                }
+            }
+        }
+        parts.sort_by_key(|&(object, face, _)| (object, face));
+        let first_item = self.out.items.len() as u32;
+        let mut around = Bounds::EMPTY;
+        let mut objects = Vec::new();
+        for group in parts.chunk_by(|a, b| a.0 == b.0) {
+            let bounds = group.iter().fold(Bounds::EMPTY, |b, part| b.union(&part.2));
+            around = around.union(&bounds);
+            let first = self.out.polygons.len() as u32;
+            let mut faces: Vec<u32> = group.iter().map(|part| part.1).collect();
+            faces.dedup();
+            // The largest first: the one most likely to be seen.
+            faces.sort_by(|&a, &b| {
+                self.polygons
+                    .area(b)
+                    .total_cmp(&self.polygons.area(a))
+                    .then(a.cmp(&b))
+            });
+            let count = faces.len() as u32;
+            self.out.polygons.extend(faces);
+            self.out.items.push(Item {
+                object: group[0].0,
+                bounds,
+                first,
+                count,
+            });
+            objects.push(group[0].0);
+        }
+        let node = &mut self.out.nodes[number as usize];
+        node.items = (first_item, self.out.items.len() as u32);
+        node.bounds = around;
+        objects
+    }
+
+    fn faces(&self, id: PolygonId) -> std::ops::Range<u32> {
+        let (first, end) = self.of_polygon[id.index()];
+        first..end
+    }
+}
+
+/// How many polygons the leaves below each kD node list.
+fn costs(kd: &KdTree) -> Vec<u32> {
+    let mut costs = vec![0_u32; kd.nodes().len()];
+    // Children come after their parents.
+    for i in (0..costs.len()).rev() {
+        costs[i] = match kd.nodes()[i] {
+            KdNode::Leaf { count, .. } => count,
+            KdNode::Inner { lower, upper, .. } => {
+                costs[lower as usize].saturating_add(costs[upper as usize])
+            }
+        };
+    }
+    costs
+}
+
+/// The box of the part of a polygon in a cell, grown by a grid step, which is more than rounding.
+/// None if there is no such part, even with the growth.
+fn clipped(corners: &[[f64; 3]], cell: &Bounds) -> Option<Bounds> {
+    let mut polygon = corners.to_vec();
+    for k in 0..3 {
+        for (sign, limit) in [(1.0, cell.high[k] + 1.0), (-1.0, -(cell.low[k] - 1.0))] {
+            let mut kept = Vec::with_capacity(polygon.len() + 1);
+            for (i, a) in polygon.iter().enumerate() {
+                let b = &polygon[(i + 1) % polygon.len()];
+                let (f, g) = (limit - sign * a[k], limit - sign * b[k]);
+                if f >= 0.0 {
+                    kept.push(*a);
+                }
+                if (f >= 0.0) != (g >= 0.0) {
+                    let t = f / (f - g);
+                    kept.push(std::array::from_fn(|j| a[j] + t * (b[j] - a[j])));
+                }
+            }
+            polygon = kept;
+        }
+    }
+    if polygon.is_empty() {
+        return None;
+    }
+    let grown = Bounds::around(&polygon);
+    let whole = Bounds::around(corners);
+    let grown = Bounds {
+        low: grown.low.map(|c| c.floor() - 1.0),
+        high: grown.high.map(|c| c.ceil() + 1.0),
+    };
+    // What is whole keeps its exact box.
+    Some(grown.meet(&whole)).filter(|b| !b.is_empty())
+}

@@ -1,0 +1,165 @@
+//! Which occluders a frame starts with, and in which order they are inserted.
+//!
+//! The quality of an occluder is its area-angle [Bittner02, 4.5], `A |N . V| / D^2` with the direction V
+//! and the distance D of its middle.
+
+use antumbra_scene::{FusedOccluder, Scene, fuse_occluders};
+
+use super::bound::{dot, sub};
+use super::faces::{Faces, Lines};
+use super::hierarchy::{Bounds, Hierarchy};
+use super::options::{CullOptions, REGION_OCCLUDERS, Selection};
+
+/// The potential occluders of a scene.
+pub(super) struct Occluders {
+    pub faces: Faces,
+    pub bounds: Vec<Bounds>,
+    /// The object of those that can be switched off.
+    pub owners: Vec<Option<u32>>,
+    /// For each leaf of the hierarchy, the best from its middle; empty unless asked for.
+    regions: Vec<Vec<u32>>,
+}
+
+impl Occluders {
+    /// The largest fused occluders, as far as the options let them be.
+    pub(super) fn new(scene: &Scene, lines: &mut Lines, options: &CullOptions) -> Self {
+        let fused = fuse_occluders(scene, |object| options.doors.contains(&object));
+        let mut out = Self {
+            faces: Faces::new(),
+            bounds: Vec::new(),
+            owners: Vec::new(),
+            regions: Vec::new(),
+        };
+        for occluder in potential(fused, options) {
+            out.faces
+                .push(lines, &occluder.corners, occluder.plane.normal);
+            // Many corners make several faces.
+            for face in out.owners.len() as u32..out.faces.len() as u32 {
+                out.bounds.push(Bounds::around(out.faces.get(face).corners));
+                out.owners.push(occluder.object.map(|o| o.0));
+            }
+        }
+        out
+    }
+
+    /// Finds the occluders of all regions. Time: leaves times occluders.
+    pub(super) fn look_around(&mut self, hierarchy: &Hierarchy) {
+        let of_leaf = |node: &super::hierarchy::HierarchyNode| {
+            if node.children.is_some() {
+                return Vec::new();
+            }
+            let cell = Bounds::of(&node.kd.bounds);
+            let middle = std::array::from_fn(|k| (cell.low[k] + cell.high[k]) * 0.5);
+            let mut best: Vec<(f64, u32)> = (0..self.faces.len() as u32)
+                .map(|o| (self.area_angle(o, middle), o))
+                .collect();
+            keep_largest(&mut best, REGION_OCCLUDERS);
+            best.into_iter().map(|(_, o)| o).collect()
+        };
+        self.regions = hierarchy.nodes.iter().map(of_leaf).collect();
+    }
+
+    /// The list of a leaf.
+    pub(super) fn region(&self, leaf: u32) -> &[u32] {
+        self.regions.get(leaf as usize).map_or(&[], Vec::as_slice)
+    }
+
+    /// In steradians, nearly.
+    #[inline]
+    pub(super) fn area_angle(&self, occluder: u32, eye: [f64; 3]) -> f64 {
+        let d = sub(self.faces.middle(occluder), eye);
+        let squared = dot(d, d);
+        let facing = dot(self.faces.normal(occluder), d).abs();
+        self.faces.area(occluder) * facing / (squared * squared.sqrt())
+    }
+
+    /// Whether the eye sees `other` on the far side of the plane of `pivot`, all of it.
+    fn is_behind(&self, other: u32, pivot: u32, eye: [f64; 3]) -> bool {
+        let face = self.faces.get(pivot);
+        let side = |p: [f64; 3]| dot(face.normal, sub(p, face.corners[0]));
+        let of_eye = side(eye).signum();
+        // A grid step is more than rounding, and as good as nothing.
+        self.faces
+            .get(other)
+            .corners
+            .iter()
+            .all(|&c| side(c) * of_eye < 1.0)
+    }
+
+    /// Sorts occluders front to back by an autopartition BSP: the first one parts the others, those
+    /// that its plane splits stay on its near side. Splitting them would change nothing, since the tree
+    /// merges late, closer occluders.
+    pub(super) fn partition(&self, list: &mut [(f64, u32)], eye: [f64; 3]) {
+        let mut rest = list;
+        while rest.len() > 1 {
+            let pivot = rest[0];
+            let mut near = 0;
+            for i in 1..rest.len() {
+                if !self.is_behind(rest[i].1, pivot.1, eye) {
+                    near += 1;
+                    rest[1..].swap(near - 1, i - 1);
+                }
+            }
+            // Pivot after the near ones.
+            rest.swap(0, near);
+            let (before, after) = rest.split_at_mut(near);
+            self.partition(before, eye);
+            rest = &mut after[1..];
+        }
+    }
+}
+
+/// The best of a list, in order; equal ones by number.
+pub(super) fn keep_largest(list: &mut Vec<(f64, u32)>, count: usize) {
+    let order = |a: &(f64, u32), b: &(f64, u32)| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1));
+    if count == 0 {
+        list.clear();
+    } else if list.len() > count {
+        list.select_nth_unstable_by(count - 1, order);
+        list.truncate(count);
+    }
+    list.sort_unstable_by(order);
+}
+
+/// The largest occluders, in their order.
+fn potential(fused: Vec<FusedOccluder>, options: &CullOptions) -> Vec<FusedOccluder> {
+    let area = |occluder: &FusedOccluder| {
+        let mut faces = Faces::new();
+        faces.push(
+            &mut Lines::default(),
+            &occluder.corners,
+            occluder.plane.normal,
+        );
+        (0..faces.len() as u32).map(|i| faces.area(i)).sum::<f64>()
+    };
+    let areas: Vec<f64> = fused.iter().map(area).collect();
+    let mut sorted = areas.clone();
+    sorted.sort_unstable_by(|a, b| b.total_cmp(a));
+    let all: f64 = sorted.iter().sum();
+    let mut sum = 0.0;
+    let enough = sorted.iter().position(|a| {
+        sum += a;
+        sum >= all * options.potential_share
+    });
+    let last = enough
+        .unwrap_or(usize::MAX)
+        .min(options.potential.saturating_sub(1));
+    let smallest = if options.potential == 0 {
+        f64::INFINITY
+    } else {
+        sorted.get(last).copied().unwrap_or(0.0)
+    };
+    fused
+        .into_iter()
+        .zip(areas)
+        .filter(|(_, area)| *area >= smallest)
+        .map(|(occluder, _)| occluder)
+        .collect()
+}
+
+impl Selection {
+    /// Whether occluders are inserted while the hierarchy is swept.
+    pub(super) fn sweeps(self) -> bool {
+        self == Self::Sweep
+    }
+}

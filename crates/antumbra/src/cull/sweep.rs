@@ -1,0 +1,425 @@
+//! A frame: occluders are chosen and inserted, the hierarchy is swept, what is left is visible.
+
+use antumbra_scene::ObjectId;
+
+use super::bound::snap_eye;
+use super::coherence::{Memory, State};
+use super::hierarchy::{Bounds, HierarchyNode};
+use super::options::{LeafTest, Method, MinimumCost, Order, Selection};
+use super::select::keep_largest;
+use super::tree::{Block, ROOT};
+use super::{Camera, CullWork, Culler, Visible};
+
+impl Culler {
+    /// What a camera may see: everything that is not surely hidden or outside its frustum.
+    ///
+    /// Never panics, never allocates. An eye too far away for exact differences gets what is in the
+    /// frustum.
+    pub fn cull(&mut self, camera: &Camera) -> &Visible {
+        self.next_frame();
+        let eye = self.grid.to_grid_f64(camera.eye());
+        let near = snap_eye(eye);
+        let occluding = near.is_some() && self.options.method != Method::Frustum;
+        let eye = near.unwrap_or(eye);
+        self.start_tree(camera, eye, occluding);
+        self.sweep(eye, occluding);
+        if matches!(
+            self.options.selection,
+            Selection::Previous { .. } | Selection::Region
+        ) {
+            self.choose_for_next(eye);
+        }
+        self.visible.objects.sort_unstable();
+        let work = &mut self.visible.work;
+        work.occluders = self.planted.len() as u64;
+        work.tree_nodes = self.tree.node_count() as u64;
+        work.tree_steps = self.tree.steps;
+        work.tree_visits = self.tree.visits;
+        self.learn();
+        &self.visible
+    }
+
+    fn next_frame(&mut self) {
+        let visible = &mut self.visible;
+        visible.objects.clear();
+        visible.work = CullWork::default();
+        if visible.frame >= u32::MAX - 1 {
+            visible.frames.fill(0);
+            self.tried.fill(0);
+            self.memory.fill(Memory::NEW);
+            visible.frame = 0;
+        }
+        // The first frame is number 2: what was never seen was not seen in the frame before.
+        visible.frame = visible.frame.max(1) + 1;
+        self.seen_leaves.clear();
+    }
+
+    /// Builds the tree of the occluders that a frame starts with, or keeps the one there is.
+    fn start_tree(&mut self, camera: &Camera, eye: [f64; 3], occluding: bool) {
+        let reuse = self.options.coherence.reuse_tree;
+        let edges = camera.edges();
+        if reuse && occluding && self.eye == Some(eye) {
+            self.tree.turn(&edges);
+            self.visible.work.tree_reused = true;
+            for &occluder in &self.planted {
+                self.tried[occluder as usize] = self.visible.frame;
+            }
+            return;
+        }
+        if self.options.selection.sweeps() {
+            self.choose_again();
+        }
+        if self.options.selection == Selection::Region
+            && let Some(leaf) = self.hierarchy.leaf_at(eye)
+        {
+            self.chosen.clear();
+            let list = self.occluders.region(leaf);
+            let list = &list[..list.len().min(self.options.max_occluders)];
+            self.chosen.extend(list.iter().map(|&o| (0.0, o)));
+        }
+        let marking = self.options.method != Method::Standard;
+        let framed = occluding && !reuse;
+        self.tree.start(eye, &edges, framed, marking);
+        self.planted.clear();
+        self.eye = occluding.then_some(eye);
+        if !occluding {
+            return;
+        }
+        let bounds = &self.occluders.bounds;
+        for (key, occluder) in &mut self.chosen {
+            *key = bounds[*occluder as usize].squared_distance(eye);
+        }
+        self.chosen
+            .sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        if self.options.order == Order::Autopartition {
+            self.occluders.partition(&mut self.chosen, eye);
+        }
+        for i in 0..self.chosen.len() {
+            self.insert(self.chosen[i].1);
+        }
+    }
+
+    /// Chooses the occluders that hid something in the frame before.
+    fn choose_again(&mut self) {
+        self.chosen.clear();
+        let hits = self.tree.hits.iter().zip(&self.planted);
+        self.chosen
+            .extend(hits.filter(|(hits, _)| **hits > 0).map(|(_, &o)| (0.0, o)));
+    }
+
+    /// Chooses the occluders of the next frame: the best in visible leaves [Bittner02, 4.5].
+    fn choose_for_next(&mut self, eye: [f64; 3]) {
+        let distance = match self.options.selection {
+            Selection::Previous { distance } => distance / self.grid.step(),
+            _ => f64::INFINITY,
+        };
+        self.chosen.clear();
+        for &leaf in &self.seen_leaves {
+            let HierarchyNode { kd, occluders, .. } = &self.hierarchy.nodes[leaf as usize];
+            let cell = Bounds::of(&kd.bounds);
+            let middle: [f64; 3] = std::array::from_fn(|k| (cell.low[k] + cell.high[k]) * 0.5);
+            let from_eye = super::bound::sub(middle, eye);
+            if super::bound::dot(from_eye, from_eye).sqrt() > distance {
+                continue;
+            }
+            for i in occluders.0..occluders.1 {
+                let occluder = self.hierarchy.occluders[i as usize];
+                // Marks of the next frame, which nothing else has set yet.
+                let mark = &mut self.tried[occluder as usize];
+                if *mark != u32::MAX {
+                    *mark = u32::MAX;
+                    self.chosen
+                        .push((self.occluders.area_angle(occluder, eye), occluder));
+                }
+            }
+        }
+        for (_, occluder) in &self.chosen {
+            self.tried[*occluder as usize] = 0;
+        }
+        self.chosen
+            .retain(|(angle, _)| *angle >= self.options.min_angle);
+        keep_largest(&mut self.chosen, self.options.max_occluders);
+    }
+
+    fn insert(&mut self, occluder: u32) {
+        let work = &mut self.visible.work;
+        let done = self.tree.visits > self.options.max_visits
+            || work.occluders_tried >= self.options.max_occluders as u64;
+        let owner = self.occluders.owners[occluder as usize];
+        if done || owner.is_some_and(|door| self.open[door as usize]) {
+            return;
+        }
+        self.tried[occluder as usize] = self.visible.frame;
+        work.occluders_tried += 1;
+        if self.tree.insert(&self.occluders.faces.get(occluder)) {
+            self.planted.push(occluder);
+        }
+    }
+
+    fn sweep(&mut self, eye: [f64; 3], occluding: bool) {
+        if self.hierarchy.nodes.is_empty() {
+            return;
+        }
+        let minimum = self.minimum_cost();
+        self.stack.clear();
+        self.stack.push((0, ROOT));
+        while let Some((number, mut entry)) = self.stack.pop() {
+            let node = &self.hierarchy.nodes[number as usize];
+            let (children, axis, at) = (node.children, node.axis as usize, node.at);
+            let state = self.classify(number, eye, occluding, minimum, &mut entry);
+            let before = std::mem::replace(
+                &mut self.memory[number as usize],
+                Memory {
+                    frame: self.visible.frame,
+                    state: state.0,
+                    hidden_children: 0,
+                    propagated: state.1,
+                },
+            );
+            match (state.0, children) {
+                (State::Passed, _) => {}
+                (State::Outside | State::Invisible, _) => self.pull_up(number),
+                (State::Visible, Some([lower, upper])) => {
+                    let (near, far) = if eye[axis] < at {
+                        (lower, upper)
+                    } else {
+                        (upper, lower)
+                    };
+                    self.stack.push((far, entry));
+                    self.stack.push((near, entry));
+                }
+                (State::Visible, None) => {
+                    self.leaf(number, eye, occluding, minimum, entry, before);
+                }
+            }
+        }
+    }
+
+    /// The state of a node, and whether its neighbors told it [Bittner02, Figure 4.4].
+    fn classify(
+        &mut self,
+        number: u32,
+        eye: [f64; 3],
+        occluding: bool,
+        minimum: u32,
+        entry: &mut u32,
+    ) -> (State, bool) {
+        let node = &self.hierarchy.nodes[number as usize];
+        let frame = self.visible.frame;
+        let before = self.memory[number as usize];
+        let remembered = before.frame + 1 == frame;
+        let was_visible = remembered && before.state == State::Visible;
+        let propagating = self.propagation.is_some();
+        if node.bounds.is_empty() && !propagating {
+            return (State::Invisible, false);
+        }
+        // Nothing new can be found in it but occluders.
+        if !self.options.thorough
+            && let Some((first, end)) = node.objects
+            && first < end
+        {
+            let objects = &self.hierarchy.objects[first as usize..end as usize];
+            let frames = &self.visible.frames;
+            if objects.iter().all(|&o| frames[o as usize] == frame) {
+                return (State::Passed, false);
+            }
+        }
+        if was_visible && node.children.is_some() && self.options.coherence.updating {
+            self.visible.work.nodes_skipped += 1;
+            return (State::Visible, false);
+        }
+        // States of cells are needed where they are passed on.
+        let bounds = if propagating {
+            Bounds::of(&node.kd.bounds)
+        } else {
+            node.bounds
+        };
+        let block = bounds.seen_from(eye);
+        if !occluding || node.cost < minimum {
+            let outside = self.tree.is_outside(&block);
+            let state = if outside {
+                State::Outside
+            } else {
+                State::Visible
+            };
+            self.visible.work.node_tests += u64::from(!occluding);
+            return (state, false);
+        }
+        if was_visible && node.children.is_none() && self.happens(self.skip.value()) {
+            self.visible.work.leaves_kept += 1;
+            return (State::Visible, false);
+        }
+        if propagating && !was_visible {
+            let succeeded = remembered && before.propagated;
+            if (succeeded || self.happens(self.propagate.value())) && self.propagated(number, eye) {
+                self.visible.work.nodes_propagated += 1;
+                return (State::Invisible, true);
+            }
+        }
+        self.visible.work.node_tests += 1;
+        let hidden = self.hides(&block, entry);
+        if was_visible && self.hierarchy.nodes[number as usize].children.is_none() {
+            self.skip.learn(!hidden);
+        }
+        let state = if !hidden {
+            State::Visible
+        } else if self.tree.is_outside(&block) {
+            State::Outside
+        } else {
+            State::Invisible
+        };
+        (state, false)
+    }
+
+    fn propagated(&mut self, number: u32, eye: [f64; 3]) -> bool {
+        let frame = self.visible.frame;
+        let Some(propagation) = &mut self.propagation else {
+            return false;
+        };
+        let hidden = propagation.hides(&self.kd, &self.hierarchy, &self.memory, number, eye, frame);
+        self.propagate.learn(hidden);
+        hidden
+    }
+
+    /// Whether nothing of a box can be seen, by the chosen method.
+    fn hides(&mut self, block: &Block, entry: &mut u32) -> bool {
+        let reuse = self.options.coherence.reuse_tree;
+        if reuse && self.tree.is_outside(block) {
+            return true;
+        }
+        match self.options.method {
+            Method::Frustum => false,
+            Method::Standard => self.tree.hides_faces(block),
+            Method::Modified(test) => self.tree.hides_box(block, test, entry),
+            Method::Inner => self.tree.hides_outline(block, LeafTest::Exact),
+        }
+    }
+
+    /// Visibility of a leaf's objects; its occluders come first.
+    fn leaf(
+        &mut self,
+        number: u32,
+        eye: [f64; 3],
+        occluding: bool,
+        minimum: u32,
+        entry: u32,
+        before: Memory,
+    ) {
+        let node = &self.hierarchy.nodes[number as usize];
+        let (items, occluders, cost, bounds) = (node.items, node.occluders, node.cost, node.bounds);
+        self.seen_leaves.push(number);
+        if occluding && self.options.selection.sweeps() {
+            self.insert_of_leaf(occluders, bounds, eye);
+        }
+        let frame = self.visible.frame;
+        let cheap = occluding && cost < minimum;
+        let kept = self.options.coherence.skip.is_some() && before.frame + 1 == frame;
+        for i in items.0..items.1 {
+            let item = self.hierarchy.items[i as usize];
+            let last = self.visible.frames[item.object as usize];
+            if last == frame {
+                continue;
+            }
+            let stays = kept && last + 1 == frame && self.happens(self.skip.value());
+            if stays || cheap || self.shows(i, eye, occluding, entry) {
+                self.visible.frames[item.object as usize] = frame;
+                self.visible.objects.push(ObjectId(item.object));
+            }
+        }
+    }
+
+    /// Whether something of an item may be seen.
+    fn shows(&mut self, item: u32, eye: [f64; 3], occluding: bool, mut entry: u32) -> bool {
+        let item = self.hierarchy.items[item as usize];
+        let block = item.bounds.seen_from(eye);
+        if !occluding {
+            return !self.tree.is_outside(&block);
+        }
+        self.visible.work.item_tests += 1;
+        if self.hides(&block, &mut entry) {
+            return false;
+        }
+        if !self.options.polygons {
+            return true;
+        }
+        for i in item.first..item.first + item.count {
+            self.visible.work.polygon_tests += 1;
+            let face = self.hierarchy.polygons[i as usize];
+            if !self.tree.hides_polygon(&self.polygons.get(face)) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Inserts the occluders of a leaf that look large enough and are not hidden.
+    fn insert_of_leaf(&mut self, occluders: (u32, u32), bounds: Bounds, eye: [f64; 3]) {
+        let smallest = self.options.min_angle * bounds.squared_distance(eye);
+        for i in occluders.0..occluders.1 {
+            let occluder = self.hierarchy.occluders[i as usize];
+            // The largest come first. Their part in this leaf is no nearer than the leaf.
+            if self.occluders.faces.area(occluder) < smallest {
+                break;
+            }
+            if self.tried[occluder as usize] == self.visible.frame
+                || self.occluders.area_angle(occluder, eye) < self.options.min_angle
+            {
+                continue;
+            }
+            self.tried[occluder as usize] = self.visible.frame;
+            let block = self.occluders.bounds[occluder as usize].seen_from(eye);
+            if !self.tree.hides_box(&block, LeafTest::Exact, &mut { ROOT }) {
+                self.insert(occluder);
+            }
+        }
+    }
+
+    /// Tells the nodes above that one is hidden: with all its children a node is hidden, too.
+    fn pull_up(&mut self, mut number: u32) {
+        while number != 0 {
+            number = self.hierarchy.nodes[number as usize].parent;
+            let memory = &mut self.memory[number as usize];
+            memory.hidden_children += 1;
+            if memory.hidden_children < 2 {
+                return;
+            }
+            memory.state = State::Invisible;
+        }
+    }
+
+    fn minimum_cost(&self) -> u32 {
+        match self.options.minimum_cost {
+            MinimumCost::None => 0,
+            MinimumCost::Polygons(n) => n,
+            // A test pays if what it hides, on average, would cost more than the test.
+            MinimumCost::Automatic { polygon } => {
+                (self.cost.0 / (polygon.max(1e-9) * self.cost.1.max(0.01))).min(1e9) as u32
+            }
+        }
+    }
+
+    /// Updates what tests cost and how often they hide.
+    fn learn(&mut self) {
+        let work = &self.visible.work;
+        let tests = work.node_tests + work.item_tests;
+        if tests > 0 {
+            let steps = work.tree_steps as f64 / tests as f64;
+            let shown = self.seen_leaves.len() as f64 + self.visible.objects.len() as f64;
+            let hidden = (1.0 - shown / tests as f64).clamp(0.0, 1.0);
+            self.cost.0 += (steps - self.cost.0) / 8.0;
+            self.cost.1 += (hidden - self.cost.1) / 8.0;
+        }
+    }
+
+    /// A coin with a probability; xorshift.
+    fn happens(&mut self, probability: f64) -> bool {
+        if probability <= 0.0 {
+            return false;
+        }
+        let x = &mut self.random;
+        *x ^= *x << 13;
+        *x ^= *x >> 7;
+        *x ^= *x << 17;
+        ((*x >> 11) as f64) < probability * (1_u64 << 53) as f64
+    }
+}

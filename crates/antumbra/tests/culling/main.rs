@@ -1,0 +1,4 @@
+//! Culling against rays that know nothing of it, and what may never happen in a frame.
+
+mod odd;
+mod rays;
