@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::commands::{bake, completions, demo, r#gen, man, map, pair, pvs, ray, shadow};
+use crate::commands::{bake, completions, cull, demo, r#gen, man, map, pair, pvs, ray, shadow};
 use crate::output::Output;
 use crate::values::positive;
 
@@ -24,6 +24,7 @@ Examples:
   antumbra pair house.glb --from lamp --to table
   antumbra map house.glb --eye -12,-9,6 --to 4,3,2 --svg house.svg
   antumbra shadow house.glb --light 3,2,2.4 -o lit.glb
+  antumbra cull house.glb --path walk.path --verify
 
 Exit codes: 0 done; 2 wrong usage; 3 damaged or impossible content; 4 a path that cannot be
 read or written; 5 stopped, with what was finished saved.";
@@ -81,6 +82,8 @@ pub(crate) enum Command {
     Map(map::MapArgs),
     /// Cut every polygon into lit and shadowed parts; find where soft shadows begin and end
     Shadow(shadow::ShadowArgs),
+    /// Cull the frames of a camera path in real time: what may be seen, never wrong
+    Cull(Box<cull::CullArgs>),
     /// Make a synthetic scene
     Gen(r#gen::GenArgs),
     /// Bake, check and draw a small office that is built in

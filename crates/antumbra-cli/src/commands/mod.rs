@@ -2,6 +2,7 @@
 
 pub(crate) mod bake;
 pub(crate) mod completions;
+pub(crate) mod cull;
 pub(crate) mod demo;
 pub(crate) mod r#gen;
 pub(crate) mod man;
@@ -25,6 +26,7 @@ pub(crate) fn run(cli: Cli) -> Result<(), Failure> {
         Command::Ray(args) => ray::run(&args, &global),
         Command::Map(args) => map::run(&args, &global),
         Command::Shadow(args) => shadow::run(&args, &global),
+        Command::Cull(args) => cull::run(&args, &global),
         Command::Gen(args) => r#gen::run(&args, &global),
         Command::Demo(args) => demo::run(&args, &global),
         Command::Completions(args) => completions::run(&args),

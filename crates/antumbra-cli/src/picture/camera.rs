@@ -33,11 +33,18 @@ impl Camera {
     /// Looks from a point along the last of three axes (right, up, forward), with a full vertical
     /// angle in radians.
     pub(super) fn looking(eye: V3, axes: [V3; 3], fov: f64, size: [f64; 2]) -> Self {
+        let scale = size[1] / 2.0 / (fov / 2.0).tan();
+        Self::at(eye, axes, scale, [size[0] / 2.0, size[1] / 2.0])
+    }
+
+    /// Looks from an eye along orthonormal axes (right, up, forward), with so many pixels for each unit
+    /// at distance one, and a point of the screen straight ahead.
+    pub(super) fn at(eye: V3, axes: [V3; 3], scale: f64, center: [f64; 2]) -> Self {
         Self {
             eye,
             axes,
-            scale: size[1] / 2.0 / (fov / 2.0).tan(),
-            center: [size[0] / 2.0, size[1] / 2.0],
+            scale,
+            center,
             parallel: false,
         }
     }

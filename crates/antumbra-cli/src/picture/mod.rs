@@ -8,6 +8,7 @@ mod color;
 mod encode;
 mod facing;
 mod light;
+mod owners;
 mod perspective;
 mod plan;
 mod raster;
@@ -16,6 +17,7 @@ mod vector;
 
 pub(crate) use encode::png;
 pub(crate) use light::{Lamp, LightPicture, LitFace, light_picture};
+pub(crate) use owners::PixelOwners;
 pub(crate) use perspective::{PerspectiveOptions, perspective};
 pub(crate) use plan::plan;
 

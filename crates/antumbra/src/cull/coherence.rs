@@ -30,6 +30,11 @@ pub(super) struct Memory {
     pub hidden_children: u8,
     /// Whether propagation found the state.
     pub propagated: bool,
+    /// Whether its own test was made in this frame.
+    pub tested: bool,
+    /// For how many frames its own test is not worth making: it failed although all children are
+    /// hidden, and would be made again and again.
+    pub stubborn: u8,
 }
 
 impl Memory {
@@ -38,7 +43,27 @@ impl Memory {
         state: State::Visible,
         hidden_children: 0,
         propagated: false,
+        tested: false,
+        stubborn: 0,
     };
+}
+
+impl Memory {
+    /// All children are hidden, so the node is. In the next frame it is tested itself, and hides them at
+    /// once: unless it was, in vain.
+    pub(super) fn close(&mut self) {
+        self.state = State::Invisible;
+        self.stubborn = if self.tested {
+            16
+        } else {
+            self.stubborn.saturating_sub(1)
+        };
+    }
+
+    /// Whether an inner node was open in the frame before, or is as good as open.
+    pub(super) fn was_open(&self, frame: u32) -> bool {
+        self.frame + 1 == frame && (self.state == State::Visible || self.stubborn > 0)
+    }
 }
 
 /// A probability that may follow the rate of successes.

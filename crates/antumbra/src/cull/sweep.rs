@@ -166,6 +166,7 @@ impl Culler {
         while let Some((number, mut entry)) = self.stack.pop() {
             let node = &self.hierarchy.nodes[number as usize];
             let (children, axis, at) = (node.children, node.axis as usize, node.at);
+            let tests = self.visible.work.node_tests;
             let state = self.classify(number, eye, occluding, minimum, &mut entry);
             let before = std::mem::replace(
                 &mut self.memory[number as usize],
@@ -174,8 +175,13 @@ impl Culler {
                     state: state.0,
                     hidden_children: 0,
                     propagated: state.1,
+                    tested: self.visible.work.node_tests > tests,
+                    stubborn: 0,
                 },
             );
+            if state.0 == State::Visible {
+                self.memory[number as usize].stubborn = before.stubborn;
+            }
             match (state.0, children) {
                 (State::Passed, _) => {}
                 (State::Outside | State::Invisible, _) => self.pull_up(number),
@@ -224,7 +230,7 @@ impl Culler {
                 return (State::Passed, false);
             }
         }
-        if was_visible && node.children.is_some() && self.options.coherence.updating {
+        if self.options.coherence.updating && node.children.is_some() && before.was_open(frame) {
             self.visible.work.nodes_skipped += 1;
             return (State::Visible, false);
         }
@@ -383,7 +389,7 @@ impl Culler {
             if memory.hidden_children < 2 {
                 return;
             }
-            memory.state = State::Invisible;
+            memory.close();
         }
     }
 

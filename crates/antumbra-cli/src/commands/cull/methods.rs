@@ -1,0 +1,212 @@
+//! The choices of the papers as options.
+
+use antumbra::cull::{CullOptions, LeafTest, Method, MinimumCost, Order, Probability, Selection};
+use antumbra_scene::{ObjectId, Scene};
+use clap::{Args, ValueEnum};
+
+use crate::failure::Failure;
+
+/// How to cull.
+#[derive(Args, Clone, Debug)]
+pub(super) struct MethodArgs {
+    /// A set of options to start from
+    #[arg(long, value_enum, value_name = "NAME", default_value_t)]
+    preset: Preset,
+    /// How nodes are tested
+    #[arg(long, value_enum, value_name = "METHOD")]
+    method: Option<MethodArg>,
+    /// Where the occluders of a frame come from
+    #[arg(long, value_enum, value_name = "FROM")]
+    select: Option<SelectArg>,
+    /// With `--select previous`: how far away, in scene units
+    #[arg(long, value_name = "LENGTH", value_parser = crate::values::positive)]
+    within: Option<f64>,
+    /// The most occluders of a frame
+    #[arg(long, value_name = "N")]
+    best: Option<usize>,
+    /// The smallest area-angle of an occluder, in steradians
+    #[arg(long, value_name = "SR", value_parser = crate::values::positive)]
+    min_angle: Option<f64>,
+    /// In which order occluders are inserted
+    #[arg(long, value_enum, value_name = "ORDER")]
+    order: Option<OrderArg>,
+    /// Nodes with fewer polygons are not tested: a number, or `auto`
+    #[arg(long, value_name = "N", value_parser = minimum)]
+    minimum_cost: Option<MinimumCost>,
+    /// Test every node in every frame
+    #[arg(long)]
+    no_updating: bool,
+    /// The probability to keep a visible leaf untested, or `auto`
+    #[arg(long, value_name = "P", value_parser = probability)]
+    skip: Option<Probability>,
+    /// The probability to try propagation along ropes, or `auto`
+    #[arg(long, value_name = "P", value_parser = probability)]
+    propagate: Option<Probability>,
+    /// Keep the occlusion tree as long as the eye rests
+    #[arg(long)]
+    reuse_tree: bool,
+    /// Test the boxes of objects only, not their polygons
+    #[arg(long)]
+    no_polygons: bool,
+    /// Classes whose objects can be opened
+    #[arg(long, value_name = "A,B", value_delimiter = ',')]
+    doors: Vec<String>,
+    /// Doors that are open, by name or id
+    #[arg(long, value_name = "ID,ID", value_delimiter = ',', requires = "doors")]
+    open: Vec<String>,
+}
+
+/// Named sets of options.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum Preset {
+    /// Fast and nearly tight
+    #[default]
+    Fast,
+    /// Every polygon may occlude
+    Tight,
+    /// As in the papers: FME with 32 occluders of the frame before
+    Paper,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum MethodArg {
+    /// The frustum alone
+    F,
+    /// Plain occlusion tree, faces of boxes split
+    Fse,
+    /// Marked edges, boxes whole, exact test in leaves
+    Fme,
+    /// Marked edges, boxes whole, conservative test in leaves
+    Fmc,
+    /// As fme, outlines of boxes split in inner nodes
+    Inner,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum SelectArg {
+    /// What hid something before, then whatever the sweep meets
+    Sweep,
+    /// The largest area-angles in leaves seen before
+    Previous,
+    /// The largest area-angles of the region, found beforehand
+    Region,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum OrderArg {
+    /// By distance
+    Distance,
+    /// By an autopartition BSP
+    Autopartition,
+}
+
+fn probability(text: &str) -> Result<Probability, String> {
+    if text == "auto" {
+        return Ok(Probability::SelfTuned);
+    }
+    match text.parse::<f64>() {
+        Ok(p) if (0.0..=1.0).contains(&p) => Ok(Probability::Fixed(p)),
+        _ => Err("expected a number from 0 to 1, or auto".to_owned()),
+    }
+}
+
+fn minimum(text: &str) -> Result<MinimumCost, String> {
+    if text == "auto" {
+        // A polygon takes a graphics card about as long as two nodes of the tree take here.
+        return Ok(MinimumCost::Automatic { polygon: 2.0 });
+    }
+    text.parse()
+        .map(MinimumCost::Polygons)
+        .map_err(|_| "expected a number of polygons, or auto".to_owned())
+}
+
+impl MethodArgs {
+    /// The options, and the doors that are open.
+    pub(super) fn options(
+        &self,
+        scene: &Scene,
+        seed: u64,
+    ) -> Result<(CullOptions, Vec<ObjectId>), Failure> {
+        let mut options = match self.preset {
+            Preset::Fast => CullOptions::default(),
+            Preset::Tight => CullOptions::tight(),
+            Preset::Paper => CullOptions::paper(Method::Modified(LeafTest::Exact), 32),
+        };
+        options.seed = seed;
+        if let Some(method) = self.method {
+            options.method = match method {
+                MethodArg::F => Method::Frustum,
+                MethodArg::Fse => Method::Standard,
+                MethodArg::Fme => Method::Modified(LeafTest::Exact),
+                MethodArg::Fmc => Method::Modified(LeafTest::Conservative),
+                MethodArg::Inner => Method::Inner,
+            };
+        }
+        let distance = self.within.unwrap_or(f64::INFINITY);
+        match self.select {
+            Some(SelectArg::Sweep) => options.selection = Selection::Sweep,
+            Some(SelectArg::Region) => options.selection = Selection::Region,
+            Some(SelectArg::Previous) => options.selection = Selection::Previous { distance },
+            None if self.within.is_some() => {
+                options.selection = Selection::Previous { distance };
+            }
+            None => {}
+        }
+        match self.order {
+            Some(OrderArg::Distance) => options.order = Order::Distance,
+            Some(OrderArg::Autopartition) => options.order = Order::Autopartition,
+            None => {}
+        }
+        options.max_occluders = self.best.unwrap_or(options.max_occluders);
+        options.min_angle = self.min_angle.unwrap_or(options.min_angle);
+        options.minimum_cost = self.minimum_cost.unwrap_or(options.minimum_cost);
+        options.polygons &= !self.no_polygons;
+        let coherence = &mut options.coherence;
+        coherence.updating &= !self.no_updating;
+        coherence.skip = self.skip;
+        coherence.propagation = self.propagate;
+        coherence.reuse_tree = self.reuse_tree;
+        let open = self.doors(scene, &mut options)?;
+        Ok((options, open))
+    }
+
+    fn doors(&self, scene: &Scene, options: &mut CullOptions) -> Result<Vec<ObjectId>, Failure> {
+        let classes: Vec<String> = self.doors.iter().map(|c| c.to_lowercase()).collect();
+        let is_door = |object: ObjectId| {
+            let class = scene.object(object).class.as_deref().unwrap_or("");
+            classes.contains(&class.to_lowercase())
+        };
+        options.doors = (0..scene.objects().len() as u32)
+            .map(ObjectId)
+            .filter(|&o| is_door(o))
+            .collect();
+        if !classes.is_empty() && options.doors.is_empty() {
+            return Err(Failure::Usage(format!(
+                "no object has the class {}; see the classes of the scene",
+                self.doors.join(" or ")
+            )));
+        }
+        let open = self.open.iter().map(|name| {
+            let found = scene
+                .find_object(name)
+                .filter(|id| options.doors.contains(id));
+            found.ok_or_else(|| {
+                Failure::Usage(format!("--open {name}: no door has this name or id"))
+            })
+        });
+        open.collect()
+    }
+
+    /// What a title calls it.
+    pub(super) fn name(&self) -> String {
+        let preset = match self.preset {
+            Preset::Fast => "fast",
+            Preset::Tight => "tight",
+            Preset::Paper => "paper",
+        };
+        match self.method {
+            Some(method) => format!("{preset}, {}", format!("{method:?}").to_uppercase()),
+            None => preset.to_owned(),
+        }
+    }
+}

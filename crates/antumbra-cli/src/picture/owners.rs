@@ -1,0 +1,70 @@
+//! An item buffer in which coincident surfaces share their pixels.
+
+use super::camera::Camera;
+use super::raster::scan;
+use super::vector::V3;
+
+/// Surfaces whose nearness differs by less than this share coincide; far more than rounding, far less
+/// than any gap of a model.
+const SAME: f64 = 1e-9;
+
+/// First all that hides is drawn, then whoever is as near as what was drawn gets the pixel.
+pub(crate) struct PixelOwners {
+    size: [usize; 2],
+    camera: Camera,
+    keys: Vec<f64>,
+}
+
+impl PixelOwners {
+    /// A view from an eye; `half` is half its width and height at distance one.
+    pub(crate) fn new(size: [usize; 2], eye: V3, axes: [V3; 3], half: [f64; 2]) -> Self {
+        let [w, h] = size.map(|n| n as f64);
+        Self {
+            size,
+            camera: Camera::at(eye, axes, h / 2.0 / half[1], [w / 2.0, h / 2.0]),
+            keys: vec![f64::NEG_INFINITY; size[0] * size[1]],
+        }
+    }
+
+    /// Draws a convex polygon that hides what is behind it.
+    pub(crate) fn draw(&mut self, corners: &[V3]) {
+        let keys = &mut self.keys;
+        scan(self.size, &self.camera, corners, |i, key| {
+            keys[i] = keys[i].max(key);
+        });
+    }
+
+    /// Calls `owner` with column and row of each pixel that shows a polygon.
+    pub(crate) fn credit(&self, corners: &[V3], mut owner: impl FnMut([u32; 2])) {
+        let width = self.size[0];
+        scan(self.size, &self.camera, corners, |i, key| {
+            let nearest = self.keys[i];
+            if key >= nearest - SAME * nearest.abs() || nearest == f64::NEG_INFINITY {
+                owner([(i % width) as u32, (i / width) as u32]);
+            }
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::PixelOwners;
+
+    #[test]
+    fn coincident_surfaces_share_and_hidden_ones_get_nothing() {
+        let axes = [[0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]];
+        let mut pixels = PixelOwners::new([32, 32], [0.0; 3], axes, [1.0, 1.0]);
+        let square = |x: f64, s: f64| [[x, -s, -s], [x, s, -s], [x, s, s], [x, -s, s]];
+        let count = |pixels: &PixelOwners, x, s| {
+            let mut n = 0;
+            pixels.credit(&square(x, s), |_| n += 1);
+            n
+        };
+        assert_eq!(count(&pixels, 2.0, 1.0), 256, "nothing hides anything yet");
+        pixels.draw(&square(2.0, 1.0));
+        assert_eq!(count(&pixels, 2.0, 1.0), 256);
+        assert_eq!(count(&pixels, 2.0, 0.5), 64, "coincident");
+        assert_eq!(count(&pixels, 3.0, 1.0), 0, "behind");
+        assert_eq!(count(&pixels, 4.0, 4.0), 1024 - 256, "around");
+    }
+}
