@@ -134,6 +134,9 @@ pub struct CullOptions {
     /// Whether leaves are entered for their occluders although all their objects are known to be
     /// visible.
     pub thorough: bool,
+    /// Whether what was found visible is tested once more, with the occluders that were found on the
+    /// way, the largest area-angle first. Visible is what both passes call visible.
+    pub twice: bool,
     /// Objects that can be switched off as occluders, see [`super::Culler::set_open`].
     pub doors: Vec<ObjectId>,
     /// What the probabilities depend on.
@@ -148,7 +151,7 @@ impl Default for CullOptions {
             selection: Selection::Sweep,
             order: Order::Distance,
             max_occluders: 1024,
-            min_angle: 7e-5,
+            min_angle: 1e-4,
             potential: 3600,
             potential_share: 0.99,
             max_visits: 10_000,
@@ -159,6 +162,7 @@ impl Default for CullOptions {
                 ..Coherence::NONE
             },
             thorough: false,
+            twice: false,
             doors: Vec::new(),
             seed: 1,
         }
@@ -170,12 +174,13 @@ impl CullOptions {
     #[must_use]
     pub fn tight() -> Self {
         Self {
-            max_occluders: 2000,
+            max_occluders: 4000,
             min_angle: 0.0,
             potential: usize::MAX,
             potential_share: 1.0,
             max_visits: u64::MAX,
             thorough: true,
+            twice: true,
             ..Self::default()
         }
     }

@@ -10,19 +10,45 @@ use super::select::keep_largest;
 use super::tree::{Block, ROOT};
 use super::{Camera, CullWork, Culler, Visible};
 
+/// Which look at a frame it is. Each has a number of its own among the frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Pass {
+    First,
+    /// Asks only for what the first one has seen.
+    Second,
+}
+
+impl Pass {
+    /// Whether an object that was last seen in some frame is still to be asked for.
+    #[inline]
+    fn asks(self, last: u32, frame: u32) -> bool {
+        match self {
+            Self::First => last != frame,
+            Self::Second => last + 1 == frame,
+        }
+    }
+}
+
 impl Culler {
     /// What a camera may see: everything that is not surely hidden or outside its frustum.
     ///
     /// Never panics, never allocates. An eye too far away for exact differences gets what is in the
     /// frustum.
     pub fn cull(&mut self, camera: &Camera) -> &Visible {
+        self.visible.objects.clear();
+        self.visible.work = CullWork::default();
         self.next_frame();
         let eye = self.grid.to_grid_f64(camera.eye());
         let near = snap_eye(eye);
         let occluding = near.is_some() && self.options.method != Method::Frustum;
         let eye = near.unwrap_or(eye);
-        self.start_tree(camera, eye, occluding);
-        self.sweep(eye, occluding);
+        self.pass(camera, eye, occluding, Pass::First);
+        if self.options.twice && occluding && self.options.selection.sweeps() {
+            // Both are right, so what one of them hides is hidden.
+            self.next_frame();
+            self.visible.objects.clear();
+            self.pass(camera, eye, occluding, Pass::Second);
+        }
         if matches!(
             self.options.selection,
             Selection::Previous { .. } | Selection::Region
@@ -33,16 +59,19 @@ impl Culler {
         let work = &mut self.visible.work;
         work.occluders = self.planted.len() as u64;
         work.tree_nodes = self.tree.node_count() as u64;
-        work.tree_steps = self.tree.steps;
-        work.tree_visits = self.tree.visits;
         self.learn();
         &self.visible
     }
 
+    fn pass(&mut self, camera: &Camera, eye: [f64; 3], occluding: bool, pass: Pass) {
+        self.start_tree(camera, eye, occluding, pass);
+        self.sweep(eye, occluding, pass);
+        self.visible.work.tree_steps += self.tree.steps;
+        self.visible.work.tree_visits += self.tree.visits;
+    }
+
     fn next_frame(&mut self) {
         let visible = &mut self.visible;
-        visible.objects.clear();
-        visible.work = CullWork::default();
         if visible.frame >= u32::MAX - 1 {
             visible.frames.fill(0);
             self.tried.fill(0);
@@ -55,10 +84,10 @@ impl Culler {
     }
 
     /// Builds the tree of the occluders that a frame starts with, or keeps the one there is.
-    fn start_tree(&mut self, camera: &Camera, eye: [f64; 3], occluding: bool) {
+    fn start_tree(&mut self, camera: &Camera, eye: [f64; 3], occluding: bool, pass: Pass) {
         let reuse = self.options.coherence.reuse_tree;
         let edges = camera.edges();
-        if reuse && occluding && self.eye == Some(eye) {
+        if reuse && occluding && pass == Pass::First && self.eye == Some(eye) {
             self.tree.turn(&edges);
             self.visible.work.tree_reused = true;
             for &occluder in &self.planted {
@@ -85,9 +114,12 @@ impl Culler {
         if !occluding {
             return;
         }
-        let bounds = &self.occluders.bounds;
+        let occluders = &self.occluders;
         for (key, occluder) in &mut self.chosen {
-            *key = bounds[*occluder as usize].squared_distance(eye);
+            *key = match pass {
+                Pass::First => occluders.bounds[*occluder as usize].squared_distance(eye),
+                Pass::Second => -occluders.area_angle(*occluder, eye),
+            };
         }
         self.chosen
             .sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -156,7 +188,7 @@ impl Culler {
         }
     }
 
-    fn sweep(&mut self, eye: [f64; 3], occluding: bool) {
+    fn sweep(&mut self, eye: [f64; 3], occluding: bool, pass: Pass) {
         if self.hierarchy.nodes.is_empty() {
             return;
         }
@@ -167,7 +199,7 @@ impl Culler {
             let node = &self.hierarchy.nodes[number as usize];
             let (children, axis, at) = (node.children, node.axis as usize, node.at);
             let tests = self.visible.work.node_tests;
-            let state = self.classify(number, eye, occluding, minimum, &mut entry);
+            let state = self.classify(number, eye, (occluding, pass), minimum, &mut entry);
             let before = std::mem::replace(
                 &mut self.memory[number as usize],
                 Memory {
@@ -195,7 +227,7 @@ impl Culler {
                     self.stack.push((near, entry));
                 }
                 (State::Visible, None) => {
-                    self.leaf(number, eye, occluding, minimum, entry, before);
+                    self.leaf(number, eye, (occluding, pass), minimum, entry, before);
                 }
             }
         }
@@ -206,7 +238,7 @@ impl Culler {
         &mut self,
         number: u32,
         eye: [f64; 3],
-        occluding: bool,
+        (occluding, pass): (bool, Pass),
         minimum: u32,
         entry: &mut u32,
     ) -> (State, bool) {
@@ -220,13 +252,17 @@ impl Culler {
             return (State::Invisible, false);
         }
         // Nothing new can be found in it but occluders.
-        if !self.options.thorough
+        let thorough = self.options.thorough && pass == Pass::First;
+        if !thorough
             && let Some((first, end)) = node.objects
             && first < end
         {
             let objects = &self.hierarchy.objects[first as usize..end as usize];
             let frames = &self.visible.frames;
-            if objects.iter().all(|&o| frames[o as usize] == frame) {
+            if objects
+                .iter()
+                .all(|&o| !pass.asks(frames[o as usize], frame))
+            {
                 return (State::Passed, false);
             }
         }
@@ -306,7 +342,7 @@ impl Culler {
         &mut self,
         number: u32,
         eye: [f64; 3],
-        occluding: bool,
+        (occluding, pass): (bool, Pass),
         minimum: u32,
         entry: u32,
         before: Memory,
@@ -323,7 +359,7 @@ impl Culler {
         for i in items.0..items.1 {
             let item = self.hierarchy.items[i as usize];
             let last = self.visible.frames[item.object as usize];
-            if last == frame {
+            if !pass.asks(last, frame) {
                 continue;
             }
             let stays = kept && last + 1 == frame && self.happens(self.skip.value());
