@@ -25,6 +25,7 @@ fn scenes_that_cannot_be_read() {
         r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"gone.bin","byteLength":4}]}"#,
     );
     folder.write("broken.gltf", "{\"asset\": ");
+    folder.write("walk.path", "0 0 9 1 0 0 0 0 1 60\n");
     for (scene, code) in [
         ("missing.glb", 4),
         (".", 4),
@@ -45,6 +46,7 @@ fn scenes_that_cannot_be_read() {
             format!("ray {scene} --from 0,0,0 --to 1,1,1"),
             format!("map {scene} --eye 0,0,9 -o out.json"),
             format!("shadow {scene} --light 0,0,9 -o out.glb"),
+            format!("cull {scene} --path walk.path -o out.json"),
         ] {
             let run = folder.run(&line);
             let text = run.failure(code);

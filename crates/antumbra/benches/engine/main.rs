@@ -6,6 +6,7 @@
 #![allow(missing_docs, reason = "the macro makes a public function")]
 
 mod buildings;
+mod culling;
 mod maps;
 mod pairs;
 mod synthetic;
@@ -19,6 +20,6 @@ criterion_group! {
         .warm_up_time(std::time::Duration::from_millis(300))
         .measurement_time(std::time::Duration::from_secs(3));
     targets = synthetic::build, synthetic::layered, synthetic::triangles, pairs::all, buildings::cells,
-        maps::views
+        maps::views, culling::walks
 }
 criterion_main!(engine);

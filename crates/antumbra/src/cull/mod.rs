@@ -81,6 +81,8 @@ impl Visible {
 pub struct CullWork {
     /// Nodes of the hierarchy tested.
     pub node_tests: u64,
+    /// Those of them that were found invisible.
+    pub nodes_hidden: u64,
     /// Nodes taken as open because they were in the frame before.
     pub nodes_skipped: u64,
     /// Leaves that stayed visible untested.

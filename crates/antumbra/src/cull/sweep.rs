@@ -300,6 +300,7 @@ impl Culler {
         }
         self.visible.work.node_tests += 1;
         let hidden = self.hides(&block, entry);
+        self.visible.work.nodes_hidden += u64::from(hidden);
         if was_visible && self.hierarchy.nodes[number as usize].children.is_none() {
             self.skip.learn(!hidden);
         }
@@ -433,9 +434,10 @@ impl Culler {
         match self.options.minimum_cost {
             MinimumCost::None => 0,
             MinimumCost::Polygons(n) => n,
-            // A test pays if what it hides, on average, would cost more than the test.
+            // A test pays if what it hides, on average, would cost more than the test. Few tests find
+            // little: below a tenth the share would pull itself down.
             MinimumCost::Automatic { polygon } => {
-                (self.cost.0 / (polygon.max(1e-9) * self.cost.1.max(0.01))).min(1e9) as u32
+                (self.cost.0 / (polygon.max(1e-9) * self.cost.1.max(0.1))).min(1e9) as u32
             }
         }
     }
@@ -444,10 +446,9 @@ impl Culler {
     fn learn(&mut self) {
         let work = &self.visible.work;
         let tests = work.node_tests + work.item_tests;
-        if tests > 0 {
+        if work.node_tests > 0 {
             let steps = work.tree_steps as f64 / tests as f64;
-            let shown = self.seen_leaves.len() as f64 + self.visible.objects.len() as f64;
-            let hidden = (1.0 - shown / tests as f64).clamp(0.0, 1.0);
+            let hidden = work.nodes_hidden as f64 / work.node_tests as f64;
             self.cost.0 += (steps - self.cost.0) / 8.0;
             self.cost.1 += (hidden - self.cost.1) / 8.0;
         }

@@ -112,8 +112,8 @@ fn probability(text: &str) -> Result<Probability, String> {
 
 fn minimum(text: &str) -> Result<MinimumCost, String> {
     if text == "auto" {
-        // A polygon takes a graphics card about as long as two nodes of the tree take here.
-        return Ok(MinimumCost::Automatic { polygon: 2.0 });
+        // An object's polygons cost a draw call, too: as if each took as long as eight nodes here.
+        return Ok(MinimumCost::Automatic { polygon: 8.0 });
     }
     text.parse()
         .map(MinimumCost::Polygons)

@@ -1,0 +1,140 @@
+//! Culling from the command line.
+
+mod tool;
+
+use serde_json::Value;
+use tool::Folder;
+
+/// A maze and a walk through it.
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.run("gen maze --rooms 5 -o maze.glb").done();
+    let line = |i: usize| format!("{} 7.5 1.6 1 0.2 0 0 0 1 60\n", 7.0 + 0.1 * i as f64);
+    let path: String = (0..12).map(line).collect();
+    folder.write("walk.path", format!("# a walk\n\n{path}"));
+    folder
+}
+
+fn ids(frame: &Value) -> Vec<u64> {
+    let list = frame["visible"].as_array().expect("a list");
+    list.iter().map(|v| v.as_u64().expect("an id")).collect()
+}
+
+#[test]
+fn frames_are_culled_verified_and_drawn() {
+    let folder = folder();
+    let line = "cull maze.glb --path walk.path --verify --size 320x180 --json --csv a.csv --svg a.svg \
+                --top t.svg --frame 5 -o a.json";
+    let result = folder.run(line).json();
+    let frames = result["frames"].as_array().expect("frames");
+    assert_eq!(frames.len(), 12);
+    for frame in frames {
+        let visible = ids(frame);
+        assert!(!visible.is_empty() && visible.is_sorted());
+        for key in ["seconds", "tests", "occluders"] {
+            assert!(frame[key].is_number(), "{key}");
+        }
+    }
+    for key in [
+        "median_seconds",
+        "p95_seconds",
+        "load_seconds",
+        "build_seconds",
+    ] {
+        assert!(result[key].is_number(), "{key}");
+    }
+    let verify = &result["verify"];
+    assert_eq!(verify["wrong_culls"], serde_json::json!([]));
+    assert!(verify["ratio"].as_f64().is_some_and(|r| r >= 1.0));
+    let csv = String::from_utf8(folder.bytes("a.csv")).expect("text");
+    assert_eq!(csv.lines().count(), 13);
+    let columns = |line: &str| line.split(',').count();
+    assert!(
+        csv.lines()
+            .all(|l| columns(l) == columns("a,b,c,d,e,f,g,h,i,j,k,l,m"))
+    );
+    for (name, part) in [("a.svg", "in the item buffer"), ("t.svg", "#1e3a70")] {
+        let svg = String::from_utf8(folder.bytes(name)).expect("text");
+        assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n") && svg.contains(part));
+    }
+}
+
+#[test]
+fn no_method_is_wrong_and_threads_change_nothing() {
+    let folder = folder();
+    let run = |options: &str| {
+        let line =
+            format!("cull maze.glb --path walk.path --json --verify --size 160x90 {options}");
+        let result = folder.run(&line).json();
+        assert_eq!(
+            result["verify"]["wrong_culls"],
+            serde_json::json!([]),
+            "{options}"
+        );
+        let frames = result["frames"].as_array().expect("frames");
+        frames.iter().map(ids).collect::<Vec<_>>()
+    };
+    assert_eq!(run("--threads 1"), run("--threads 2"));
+    let everything = run("--preset paper --method f");
+    for options in [
+        "--preset tight",
+        "--preset paper --method fse --best 16",
+        "--preset paper --method fme --best 16 --within 9",
+        "--preset paper --method fmc",
+        "--preset paper --method inner",
+        "--select region --best 40",
+        "--order autopartition",
+        "--minimum-cost auto --skip auto --propagate auto --reuse-tree",
+        "--no-updating --no-polygons",
+    ] {
+        let called = run(options);
+        let count = |frames: &[Vec<u64>]| frames.iter().map(Vec::len).sum::<usize>();
+        assert!(
+            count(&called) < count(&everything),
+            "{options} culls nothing more"
+        );
+    }
+}
+
+#[test]
+fn damaged_paths_are_refused_by_line() {
+    let folder = folder();
+    for (text, part) in [
+        ("", "no camera found"),
+        ("1 2 3\n", "line 1: 3 values found, ten expected"),
+        (
+            "0 0 0 1 0 0 0 0 1 60\n0 0 0 1 0 0 0 0 one 60\n",
+            "line 2: `one` is not a number",
+        ),
+        (
+            "nan 0 0 1 0 0 0 0 1 60\n",
+            "line 1: the camera's eye is not finite",
+        ),
+        ("0 0 0 1 0 0 0 0 1 0\n", "line 1: a view 0 degrees high"),
+        ("0 0 0 0 0 0 0 0 1 60\n", "looks nowhere"),
+        ("0 0 0 0 0 1 0 0 1 60\n", "up direction"),
+    ] {
+        folder.write("bad.path", text);
+        let run = folder.run("cull maze.glb --path bad.path --csv out.csv");
+        assert!(run.failure(3).contains(part), "{text}: {run:?}");
+    }
+    folder.write("bad.path", b"\xff\xfe\x00");
+    folder.run("cull maze.glb --path bad.path").failure(3);
+    folder.run("cull maze.glb --path gone.path").failure(4);
+    folder.run("cull gone.glb --path walk.path").failure(4);
+    folder
+        .run("cull maze.glb --path walk.path --top t.svg --frame 12")
+        .failure(2);
+    folder
+        .run("cull maze.glb --path walk.path --doors portcullis")
+        .failure(2);
+    folder
+        .run("cull maze.glb --path walk.path -o walk.path")
+        .failure(2);
+    assert!(
+        !folder
+            .names()
+            .iter()
+            .any(|n| n == "out.csv" || n == "t.svg")
+    );
+}
