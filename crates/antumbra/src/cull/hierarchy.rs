@@ -9,7 +9,7 @@ use antumbra_scene::{KdBox, KdNode, KdTree, PolygonId, Scene};
 
 use super::bound::dot;
 use super::faces::Faces;
-use super::tree::Block;
+use super::fragment::Block;
 
 /// A closed box in grid steps.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -24,6 +24,7 @@ mod camera;
 mod cells;
 mod coherence;
 mod faces;
+mod fragment;
 mod hierarchy;
 mod options;
 mod select;

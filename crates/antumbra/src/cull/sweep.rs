@@ -4,10 +4,11 @@ use antumbra_scene::ObjectId;
 
 use super::bound::snap_eye;
 use super::coherence::{Memory, State};
+use super::fragment::Block;
 use super::hierarchy::{Bounds, HierarchyNode};
 use super::options::{LeafTest, Method, MinimumCost, Order, Selection};
 use super::select::keep_largest;
-use super::tree::{Block, ROOT};
+use super::tree::ROOT;
 use super::{Camera, CullWork, Culler, Visible};
 
 /// Which look at a frame it is. Each has a number of its own among the frames.

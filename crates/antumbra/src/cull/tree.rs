@@ -16,14 +16,12 @@
 
 use super::bound::{MAX_DEPTH, TAU, dot, on_line, on_plane, plane_through_eye, size, sub};
 use super::camera::cross;
+use super::fragment::{
+    Block, CORNER, DOUBTFUL, MAX_CORNERS, NEGATIVE, NO_EDGE, ON, POSITIVE, Vertex, WALL, clip,
+    outline,
+};
 use super::options::LeafTest;
 
-/// An edge that a plane of the tree has made: this bit and the number of the node.
-const WALL: u32 = 1 << 31;
-/// The edge of a box: no line of the scene.
-const NO_EDGE: u32 = u32::MAX;
-/// The makers of a corner.
-const CORNER: [u32; 2] = [NO_EDGE; 2];
 /// The line of a plane of the frustum.
 const NO_LINE: u32 = u32::MAX;
 /// The slot of the root.
@@ -33,30 +31,8 @@ const LEAF: u32 = 1 << 31;
 const OPEN: u32 = u32::MAX;
 const OUTSIDE: u32 = u32::MAX - 1;
 
-/// The most corners of a fragment.
-const MAX_CORNERS: usize = 48;
 /// The most corners of an occluder.
 pub(super) const MAX_OCCLUDER_CORNERS: usize = 24;
-
-#[derive(Clone, Copy)]
-struct Vertex {
-    p: [f64; 3],
-    /// Half the width of the doubtful zone.
-    zone: f64,
-    /// The edge that starts here: its number in the polygon, or a wall.
-    edge: u32,
-    /// The edge and the node that met here; no edges for a corner, which is given.
-    from: [u32; 2],
-}
-
-impl Vertex {
-    const NONE: Self = Self {
-        p: [0.0; 3],
-        zone: 0.0,
-        edge: NO_EDGE,
-        from: CORNER,
-    };
-}
 
 #[derive(Clone, Copy)]
 struct Node {
@@ -114,27 +90,6 @@ struct Axis {
     high: f64,
 }
 
-/// A box around a point, relative to the eye.
-#[derive(Clone, Copy)]
-pub(super) struct Block {
-    pub center: [f64; 3],
-    pub half: [f64; 3],
-}
-
-impl Block {
-    /// How far it reaches from its center along a direction, times the direction's length.
-    #[inline]
-    fn reach(&self, direction: [f64; 3]) -> f64 {
-        direction[0].abs() * self.half[0]
-            + direction[1].abs() * self.half[1]
-            + direction[2].abs() * self.half[2]
-    }
-
-    fn zone(&self) -> f64 {
-        TAU * (size(self.center) + size(self.half))
-    }
-}
-
 pub(super) struct Tree {
     eye: [f64; 3],
     nodes: Vec<Node>,
@@ -162,11 +117,6 @@ pub(super) struct Tree {
     /// The planes of the frustum, pointing inward, and the one across the eye.
     frustum: [[f64; 3]; 5],
 }
-
-const POSITIVE: i8 = 1;
-const NEGATIVE: i8 = -1;
-const ON: i8 = 0;
-const DOUBTFUL: i8 = 2;
 
 impl Tree {
     /// An empty tree with all the memory it will ever use.
@@ -953,122 +903,4 @@ impl Tree {
         }
         behind
     }
-}
-
-/// The part of a fragment on one side of a plane, with all of the doubtful zone; returns how many
-/// vertices that are.
-#[inline]
-fn clip<const SIDE: i8>(
-    old: &[Vertex],
-    sides: &[f64],
-    signs: &[i8],
-    wall: u32,
-    out: &mut [Vertex],
-) -> usize {
-    let sign = f64::from(SIDE);
-    let n = old.len();
-    let mut count = 0;
-    let mut push = |v: Vertex| {
-        out[count] = v;
-        count += 1;
-    };
-    let cut = |kept: usize, lost: usize, maker: u32, edge: u32| {
-        let (v, w) = (&old[kept], &old[lost]);
-        let (f, g) = (sign * sides[kept] + v.zone, sign * sides[lost] + w.zone);
-        let t = f / (f - g);
-        Vertex {
-            p: std::array::from_fn(|k| v.p[k] + t * (w.p[k] - v.p[k])),
-            zone: v.zone.max(w.zone),
-            edge,
-            from: [maker, wall],
-        }
-    };
-    for i in 0..n {
-        let j = if i + 1 == n { 0 } else { i + 1 };
-        let (v, w) = (signs[i], signs[j]);
-        let edge = old[i].edge;
-        if v == -SIDE {
-            if w != -SIDE && w != ON {
-                push(cut(j, i, edge, edge));
-            }
-        } else if w == -SIDE && v != ON {
-            push(old[i]);
-            push(cut(i, j, edge, wall));
-        } else if v == ON && (w == -SIDE || w == ON) {
-            push(Vertex {
-                edge: wall,
-                ..old[i]
-            });
-        } else {
-            push(old[i]);
-        }
-    }
-    count
-}
-
-/// The outline of a box as it is seen from the origin, in order; returns how many corners it has,
-/// none from inside.
-fn outline(block: &Block, out: &mut [Vertex]) -> usize {
-    // For each axis: eye below, within or above the box.
-    let place = |k: usize| {
-        let (c, h) = (block.center[k], block.half[k]);
-        if c - h > 0.0 {
-            1
-        } else if c + h < 0.0 {
-            2
-        } else {
-            0
-        }
-    };
-    let code = place(0) + 3 * place(1) + 9 * place(2);
-    let zone = block.zone();
-    let corners = outline_of(code);
-    for (&corner, v) in corners.iter().zip(out) {
-        let p = std::array::from_fn(|k| {
-            let h = block.half[k];
-            block.center[k] + if corner >> k & 1 == 1 { h } else { -h }
-        });
-        *v = Vertex {
-            p,
-            zone,
-            edge: NO_EDGE,
-            from: CORNER,
-        };
-    }
-    corners.len()
-}
-
-/// Corners of a box by number (bit k is the upper side of axis k): its outline by the place of the
-/// eye, one digit of base 3 an axis: 1 below, 2 above.
-fn outline_of(code: usize) -> &'static [u8] {
-    const TABLE: [&[u8]; 27] = [
-        &[],
-        &[0, 4, 6, 2],
-        &[1, 3, 7, 5],
-        &[0, 1, 5, 4],
-        &[0, 1, 5, 4, 6, 2],
-        &[0, 1, 3, 7, 5, 4],
-        &[2, 6, 7, 3],
-        &[0, 4, 6, 7, 3, 2],
-        &[1, 3, 2, 6, 7, 5],
-        &[0, 2, 3, 1],
-        &[0, 4, 6, 2, 3, 1],
-        &[0, 2, 3, 7, 5, 1],
-        &[0, 2, 3, 1, 5, 4],
-        &[1, 5, 4, 6, 2, 3],
-        &[0, 2, 3, 7, 5, 4],
-        &[0, 2, 6, 7, 3, 1],
-        &[0, 4, 6, 7, 3, 1],
-        &[0, 2, 6, 7, 5, 1],
-        &[4, 5, 7, 6],
-        &[0, 4, 5, 7, 6, 2],
-        &[1, 3, 7, 6, 4, 5],
-        &[0, 1, 5, 7, 6, 4],
-        &[0, 1, 5, 7, 6, 2],
-        &[0, 1, 3, 7, 6, 4],
-        &[2, 6, 4, 5, 7, 3],
-        &[0, 4, 5, 7, 3, 2],
-        &[1, 3, 2, 6, 4, 5],
-    ];
-    TABLE[code]
 }
