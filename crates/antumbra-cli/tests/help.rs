@@ -4,7 +4,7 @@ mod tool;
 
 use tool::{Folder, assert_snapshot};
 
-const COMMANDS: [&str; 20] = [
+const COMMANDS: [&str; 21] = [
     "",
     "bake",
     "pvs",
