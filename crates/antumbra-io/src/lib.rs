@@ -8,6 +8,7 @@
 //! | `ply`, `stl` | PLY and STL, text and binary | |
 //! | `gzip` | any of these, compressed | |
 //! | `drawing` | | SVG and DXF of lines: [`drawing`] |
+//! | `plan` | plans: GeoJSON, SVG, DXF, text: [`plan`] | |
 //! | `pvs` | [`PvsFile`], [`ProofFile`] | [`PvsWriter`], and JSON by [`export`] |
 //!
 //! Readers take bytes and hand over a [`SceneInput`](antumbra_scene::SceneInput): float
@@ -49,6 +50,8 @@ pub mod compare;
 pub mod drawing;
 #[cfg(feature = "pvs")]
 pub mod export;
+#[cfg(feature = "plan")]
+pub mod plan;
 #[cfg(feature = "pvs")]
 mod proof;
 #[cfg(feature = "pvs")]

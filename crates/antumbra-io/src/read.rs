@@ -156,7 +156,7 @@ fn read_as(
 const MOST_UNPACKED: u64 = 1 << 32;
 
 /// The unpacked content of gzip data; `None` if it is not gzip.
-fn gunzip(bytes: &[u8]) -> Result<Option<Vec<u8>>, Damage> {
+pub(crate) fn gunzip(bytes: &[u8]) -> Result<Option<Vec<u8>>, Damage> {
     if !bytes.starts_with(b"\x1f\x8b") {
         return Ok(None);
     }

@@ -7,6 +7,7 @@ mod cells;
 mod input;
 mod kd;
 mod meet;
+pub mod plan;
 mod report;
 mod scene;
 pub mod synth;

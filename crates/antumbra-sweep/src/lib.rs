@@ -9,6 +9,7 @@ mod gates;
 mod line;
 pub mod occlusion;
 mod pair;
+pub mod plan;
 mod point;
 mod proof;
 mod random;

@@ -8,6 +8,7 @@
 pub mod cull;
 pub mod map;
 pub mod pair;
+pub mod plan;
 pub mod ray;
 pub mod region;
 pub mod shadow;

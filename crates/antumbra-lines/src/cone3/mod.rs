@@ -105,6 +105,8 @@ pub struct Mark {
 const NARROW: i64 = 1 << 62;
 /// Given rays are smaller than this.
 const GIVEN: i64 = 1 << 35;
+/// Rows below this are multiplied in doubles without rounding.
+const SMALL: f64 = (1_u64 << 26) as f64;
 /// 2^-49, see the proof above.
 const FILTER: f64 = 1.0 / (1_u64 << 49) as f64;
 
@@ -211,10 +213,51 @@ impl Space3 {
         Cone3 { corners }
     }
 
+    /// The pointed cone of some half-spaces, each a facet, in the order in which inward rows turn: for
+    /// three of them, their determinant is positive.
+    pub fn cone_of(&mut self, facets: &[Facet<Plane3>]) -> Cone3 {
+        let mut corners = self.spare.pop().unwrap_or_default();
+        corners.clear();
+        let n = facets.len();
+        for (i, facet) in facets.iter().enumerate() {
+            let before = &facets[(i + n - 1) % n];
+            corners.push(Corner3 {
+                ray: self.meet_inward((before.plane, before.side), (facet.plane, facet.side)),
+                plane: facet.plane,
+                side: facet.side,
+                wall: facet.wall,
+            });
+        }
+        Cone3 { corners }
+    }
+
+    /// The product of two rows, each turned so that it is positive on its side.
+    #[inline]
+    #[must_use]
+    pub fn meet_inward(&self, a: (Plane3, Half), b: (Plane3, Half)) -> Ray3 {
+        if a.1 == b.1 {
+            self.meet(a.0, b.0)
+        } else {
+            self.meet(b.0, a.0)
+        }
+    }
+
     /// The ray where two hyperplanes meet, their rows multiplied in this order.
     ///
     /// The hyperplanes must differ.
+    #[inline]
+    #[must_use]
     pub fn meet(&self, a: Plane3, b: Plane3) -> Ray3 {
+        let (u, v) = (&self.filters[a.0 as usize], &self.filters[b.0 as usize]);
+        let small = |r: &[f64; 3]| r.iter().all(|c| c.abs() < SMALL);
+        if small(u) && small(v) {
+            // Products below 2^52 and their differences are exact in doubles.
+            let m = |i: usize, j: usize| u[i] * v[j] - u[j] * v[i];
+            return Ray3 {
+                rounded: [m(1, 2), m(2, 0), m(0, 1)],
+                name: RayName::Meet(a, b),
+            };
+        }
         let exact = exact::meet(&self.rows[a.0 as usize], &self.rows[b.0 as usize]);
         Ray3 {
             rounded: exact.to_f64(),

@@ -1,0 +1,108 @@
+//! An oriented line of the plane as integers: `a x + b y + c`, positive at points on its left.
+
+use antumbra_kernel::Point2;
+use antumbra_lines::ExactRay;
+use dashu_int::IBig;
+
+/// A line by its exact coefficients in grid coordinates.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PlanLine {
+    /// Coefficients that fit: all lines on two grid points do.
+    Small([i64; 3]),
+    /// Others: lines on crossings.
+    Big(Box<[IBig; 3]>),
+}
+
+impl PlanLine {
+    /// From big coefficients.
+    #[must_use]
+    pub fn new(coefficients: [IBig; 3]) -> Self {
+        let small: Vec<i64> = coefficients
+            .iter()
+            .filter_map(|c| i64::try_from(c).ok())
+            .collect();
+        match <[i64; 3]>::try_from(small) {
+            Ok(small) => Self::Small(small),
+            Err(_) => Self::Big(Box::new(coefficients)),
+        }
+    }
+
+    /// From a ray of line space.
+    #[must_use]
+    pub fn of_ray(ray: &ExactRay) -> Self {
+        match ray {
+            ExactRay::Given(l) => Self::Small(*l),
+            ExactRay::Narrow(l) => match l.map(i64::try_from) {
+                [Ok(a), Ok(b), Ok(c)] => Self::Small([a, b, c]),
+                _ => Self::new(l.map(IBig::from)),
+            },
+            ExactRay::Wide(l) => Self::new(l.map(|c| {
+                let magnitude = if c.is_negative() { -c } else { c };
+                let limbs = magnitude.limbs().iter().rev();
+                let value = limbs.fold(IBig::ZERO, |sum, &limb| (sum << 64) + IBig::from(limb));
+                if c.is_negative() { -value } else { value }
+            })),
+        }
+    }
+
+    /// The coefficients.
+    #[must_use]
+    pub fn big(&self) -> [IBig; 3] {
+        match self {
+            Self::Small(l) => l.map(IBig::from),
+            Self::Big(l) => (**l).clone(),
+        }
+    }
+
+    /// The coefficients in doubles, scaled together so that they are of moderate size; for output.
+    #[must_use]
+    pub fn rounded(&self) -> [f64; 3] {
+        match self {
+            Self::Small(l) => l.map(|c| c as f64),
+            Self::Big(l) => {
+                use dashu_int::ops::BitTest;
+                let bits = l.iter().map(|c| c.bit_len()).max().unwrap_or(0);
+                let shift = bits.saturating_sub(120);
+                let lower = |c: &IBig| i128::try_from(c >> shift).unwrap_or(0) as f64;
+                [lower(&l[0]), lower(&l[1]), lower(&l[2])]
+            }
+        }
+    }
+
+    /// The sum of some lines: strictly inside their cone if they span one with an interior.
+    #[must_use]
+    pub fn sum(lines: &[Self]) -> Self {
+        let mut total = [0_i128; 3];
+        for line in lines {
+            let Self::Small(l) = line else {
+                let mut total = [IBig::ZERO, IBig::ZERO, IBig::ZERO];
+                for line in lines {
+                    for (t, c) in total.iter_mut().zip(line.big()) {
+                        *t += c;
+                    }
+                }
+                return Self::new(total);
+            };
+            for k in 0..3 {
+                total[k] += i128::from(l[k]);
+            }
+        }
+        Self::new(total.map(IBig::from))
+    }
+
+    /// The sign of a point's side: positive on the left. Exact.
+    #[must_use]
+    pub fn side(&self, p: Point2) -> i8 {
+        match self {
+            Self::Small(l) => {
+                let [x, y] = p.to_i64().map(i128::from);
+                let value = i128::from(l[0]) * x + i128::from(l[1]) * y + i128::from(l[2]);
+                value.signum() as i8
+            }
+            Self::Big(l) => {
+                let value: IBig = &l[0] * p.x + &l[1] * p.y + &l[2];
+                i8::from(value > IBig::ZERO) - i8::from(value < IBig::ZERO)
+            }
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! What a convex cell of the plane sees of a plan, exactly.
+//!
+//! After [Bittner02, ch. 6]: the lines that leave the cell fill occlusion trees over the cone in R^3; the
+//! sweep of the plan's kD-tree inserts occluders nearest first, and boxes that the trees hide are never
+//! opened. The leaves of the finished trees are the funnels, from which come the visible fragments.
+
+mod answer;
+mod line;
+mod point;
+mod ratio;
+mod region;
+mod sweep;
+
+use antumbra_lines::{DepthSpace, LineSpace, OcclusionTree};
+use antumbra_scene::plan::{CellShape, PieceId, Plan};
+
+use crate::occlusion::{BoxTest, SweepOrder};
+use crate::verdict::Accuracy;
+
+pub use answer::{Fragment, Funnel};
+pub use line::PlanLine;
+use point::PointLines;
+pub use ratio::Ratio;
+use region::RegionLines;
+pub use region::Window;
+pub use sweep::{Growth, PlanWork};
+use sweep::{How, Source, Swept, sweep};
+
+/// How to look.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ViewOptions {
+    /// The order of the sweep.
+    pub order: SweepOrder,
+    /// How boxes are tested.
+    pub test: BoxTest,
+    /// One tree for all edges of a cell, instead of one for each [Bittner02, 6.5.2].
+    pub one_tree: bool,
+    /// Leave out what is farther away than this, in grid steps: what is nearer is exact.
+    pub reach: Option<u64>,
+    /// Keep the funnels.
+    pub funnels: bool,
+    /// Record how the trees grow.
+    pub growth: bool,
+}
+
+impl Default for ViewOptions {
+    fn default() -> Self {
+        Self {
+            order: SweepOrder::Priority,
+            test: BoxTest::Conservative,
+            one_tree: false,
+            reach: None,
+            funnels: false,
+            growth: false,
+        }
+    }
+}
+
+/// What a cell sees.
+#[derive(Clone, Debug)]
+pub struct PlanView {
+    /// The cell.
+    pub cell: CellShape,
+    /// The windows of the cell; none for a point.
+    pub windows: Vec<Window>,
+    /// Pieces that meet the closed cell: visible, whatever else is said of them.
+    pub touching: Vec<PieceId>,
+    /// The visible fragments, by piece.
+    pub fragments: Vec<Fragment>,
+    /// The funnels, by piece, if they were asked for.
+    pub funnels: Vec<Funnel>,
+    /// Exact, or conservative if an occluder meets the open interior of the cell.
+    pub accuracy: Accuracy,
+    /// What was done.
+    pub work: PlanWork,
+    /// Nodes of the kD-tree that were found hidden.
+    pub culled: Vec<u32>,
+    /// How the trees grew, if that was asked for.
+    pub growth: Growth,
+}
+
+/// Looks from a convex cell. Exact; the expected cost grows with what is seen.
+#[must_use]
+pub fn look(plan: &Plan, cell: &CellShape, options: &ViewOptions) -> PlanView {
+    let how = How {
+        order: options.order,
+        test: options.test,
+        reach: options.reach,
+        growth: options.growth,
+    };
+    match cell {
+        CellShape::Point(eye) => {
+            let mut swept = sweep(plan, PointLines::new(*eye), how);
+            let funnels = point_funnels(plan, &mut swept);
+            finish(plan, cell, Vec::new(), funnels, swept, options)
+        }
+        CellShape::Segment(_) | CellShape::Region(_) => {
+            let source = RegionLines::new(plan, cell.clone(), options.one_tree);
+            let mut swept = sweep(plan, source, how);
+            let funnels = region_funnels(plan, &mut swept);
+            let windows = swept.source.windows().to_vec();
+            finish(plan, cell, windows, funnels, swept, options)
+        }
+    }
+}
+
+fn region_funnels(plan: &Plan, swept: &mut Swept<RegionLines>) -> Vec<Funnel> {
+    let mut out = Vec::new();
+    let source = &mut swept.source;
+    for window in 0..source.windows().len() {
+        let tree = &swept.trees[source.tree_of(window)];
+        let roots = source.roots(window, tree);
+        let mut cells = Vec::new();
+        answer::blocked(source.space(), tree, roots, |piece, occluder| {
+            cells.push((piece.corners.clone(), occluder));
+        });
+        for (corners, occluder) in cells {
+            let lines = corners
+                .iter()
+                .map(|c| PlanLine::of_ray(&source.lines().exact(&c.ray)))
+                .collect();
+            let piece = PieceId(source.depth_key(occluder));
+            out.extend(Funnel::new(plan, window as u32, piece, lines));
+        }
+    }
+    out
+}
+
+fn point_funnels(plan: &Plan, swept: &mut Swept<PointLines>) -> Vec<Funnel> {
+    let mut out = Vec::new();
+    let source = &mut swept.source;
+    let eye = source.lines().eye().to_i64().map(i128::from);
+    let roots = source.roots();
+    let mut cells = Vec::new();
+    answer::blocked(source.space(), &swept.trees[0], roots, |piece, occluder| {
+        cells.push((piece.rays, occluder));
+    });
+    for (rays, occluder) in cells {
+        let lines = rays
+            .iter()
+            .map(|ray| {
+                let [dx, dy] = ray.exact;
+                let line = [-dy, dx, eye[0] * dy - eye[1] * dx];
+                PlanLine::new(line.map(dashu_int::IBig::from))
+            })
+            .collect();
+        let piece = PieceId(source.depth_key(occluder));
+        out.extend(Funnel::new(plan, 0, piece, lines));
+    }
+    out
+}
+
+fn finish<S: Source>(
+    plan: &Plan,
+    cell: &CellShape,
+    windows: Vec<Window>,
+    mut funnels: Vec<Funnel>,
+    swept: Swept<S>,
+    options: &ViewOptions,
+) -> PlanView {
+    let fragments = answer::fragments(&mut funnels);
+    if !options.funnels {
+        funnels.clear();
+    }
+    let meets = |id: &PieceId| cell.meets_segment(plan.pieces()[id.0 as usize]);
+    let touching: Vec<PieceId> = plan
+        .pieces_in(&cell.bounds())
+        .into_iter()
+        .filter(meets)
+        .collect();
+    let inside = touching
+        .iter()
+        .any(|&id| plan.occludes(id) && cell.enters(plan.pieces()[id.0 as usize]));
+    PlanView {
+        cell: cell.clone(),
+        windows,
+        touching,
+        fragments,
+        funnels,
+        accuracy: if inside {
+            Accuracy::Conservative
+        } else {
+            Accuracy::Exact
+        },
+        work: swept.work,
+        culled: swept.culled,
+        growth: swept.growth,
+    }
+}

@@ -1,0 +1,180 @@
+//! Where a line meets a segment: an exact fraction of it, and the double nearest to that.
+//!
+//! With `P = p . l` and `Q = q . l` for the ends of a segment and a line that crosses it, the line
+//! meets it at `P / (P - Q)` of the way from p to q. For lines on two grid points P and Q have 50 bits,
+//! so that one division rounds to the nearest double; for others big integers do, to the same.
+
+use std::cmp::Ordering;
+
+use antumbra_kernel::Point2;
+use dashu_int::IBig;
+use dashu_int::ops::{Gcd, UnsignedAbs};
+
+use super::line::PlanLine;
+
+/// A number from 0 to 1.
+#[derive(Clone, Debug)]
+pub struct Ratio {
+    value: f64,
+    exact: Exact,
+}
+
+#[derive(Clone, Debug)]
+enum Exact {
+    Small(i64, i64),
+    Big(Box<(IBig, IBig)>),
+}
+
+impl Ratio {
+    /// Zero.
+    pub const ZERO: Self = Self {
+        value: 0.0,
+        exact: Exact::Small(0, 1),
+    };
+    /// One.
+    pub const ONE: Self = Self {
+        value: 1.0,
+        exact: Exact::Small(1, 1),
+    };
+
+    /// The double nearest to it.
+    #[must_use]
+    pub fn value(&self) -> f64 {
+        self.value
+    }
+
+    /// Numerator and denominator.
+    #[must_use]
+    pub fn parts(&self) -> (IBig, IBig) {
+        match &self.exact {
+            Exact::Small(n, d) => (IBig::from(*n), IBig::from(*d)),
+            Exact::Big(parts) => (parts.0.clone(), parts.1.clone()),
+        }
+    }
+
+    /// What remains to one.
+    #[must_use]
+    pub fn rest(&self) -> Self {
+        match &self.exact {
+            Exact::Small(n, d) => small(*d - *n, *d),
+            Exact::Big(parts) => big(&parts.1 - &parts.0, parts.1.clone()),
+        }
+    }
+
+    /// Where a line meets a segment; `None` if it runs along it.
+    #[must_use]
+    pub fn on_segment([p, q]: [Point2; 2], line: &PlanLine) -> Option<Self> {
+        if let PlanLine::Small(l) = line {
+            let at = |p: Point2| {
+                let [x, y] = p.to_i64();
+                i128::from(l[0]) * i128::from(x)
+                    + i128::from(l[1]) * i128::from(y)
+                    + i128::from(l[2])
+            };
+            let (n, d) = (at(p), at(p) - at(q));
+            if d == 0 {
+                return None;
+            }
+            if n.unsigned_abs() < 1 << 53 && d.unsigned_abs() < 1 << 53 {
+                return Some(small(n as i64, d as i64));
+            }
+        }
+        let l = line.big();
+        let at = |p: Point2| &l[0] * p.x + &l[1] * p.y + &l[2];
+        let (n, d) = (at(p), at(p) - at(q));
+        (d != IBig::ZERO).then(|| big(n, d))
+    }
+}
+
+fn small(n: i64, d: i64) -> Ratio {
+    let (n, d) = if d < 0 { (-n, -d) } else { (n, d) };
+    Ratio {
+        value: n as f64 / d as f64,
+        exact: Exact::Small(n, d),
+    }
+}
+
+fn big(n: IBig, d: IBig) -> Ratio {
+    let (n, d) = if d < IBig::ZERO { (-n, -d) } else { (n, d) };
+    let common = IBig::from((&n).gcd(&d));
+    let (n, d) = (n / &common, d / common);
+    if let (Ok(n), Ok(d)) = (i64::try_from(&n), i64::try_from(&d))
+        && n.unsigned_abs() < 1 << 53
+        && d.unsigned_abs() < 1 << 53
+    {
+        return small(n, d);
+    }
+    // At least 55 bits of the quotient, the last one odd if anything is left: rounds to nearest.
+    let shift = 120_usize;
+    let scaled = &n << shift;
+    let quotient = &scaled / &d;
+    let left = scaled != &quotient * &d;
+    let bits = u128::try_from(quotient.unsigned_abs()).unwrap_or(1 << shift) | u128::from(left);
+    let value = bits as f64 / (1_u128 << shift) as f64;
+    Ratio {
+        value,
+        exact: Exact::Big(Box::new((n, d))),
+    }
+}
+
+impl PartialEq for Ratio {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Ratio {}
+
+impl PartialOrd for Ratio {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Ratio {
+    fn cmp(&self, other: &Self) -> Ordering {
+        // Rounding keeps the order, so only equal doubles need a closer look.
+        match self.value.partial_cmp(&other.value) {
+            Some(Ordering::Less) => return Ordering::Less,
+            Some(Ordering::Greater) => return Ordering::Greater,
+            _ => {}
+        }
+        if let (Exact::Small(a, b), Exact::Small(c, d)) = (&self.exact, &other.exact) {
+            let (a, b, c, d) = (
+                i128::from(*a),
+                i128::from(*b),
+                i128::from(*c),
+                i128::from(*d),
+            );
+            return (a * d).cmp(&(c * b));
+        }
+        let ((a, b), (c, d)) = (self.parts(), other.parts());
+        (a * d).cmp(&(c * b))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Ratio, big, small};
+    use dashu_int::IBig;
+
+    #[test]
+    fn equal_fractions_are_equal_whatever_they_are_made_of() {
+        let third = small(1, 3);
+        let wide = big(IBig::from(7) << 300, IBig::from(21) << 300);
+        assert_eq!(third, wide);
+        assert_eq!(third.value().to_bits(), wide.value().to_bits());
+        assert_eq!(third.rest(), small(2, 3));
+        assert_eq!(small(-1, -3), third);
+        assert_eq!(Ratio::ONE.rest(), Ratio::ZERO);
+    }
+
+    #[test]
+    fn close_fractions_are_told_apart() {
+        let d = IBig::from(3) << 200;
+        let n = IBig::from(1) << 200;
+        let (a, b) = (big(n.clone(), d.clone()), big(n + IBig::ONE, d));
+        assert_eq!(a.value(), b.value());
+        assert!(a < b && a != b);
+    }
+}

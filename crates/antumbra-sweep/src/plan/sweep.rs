@@ -1,0 +1,251 @@
+//! The approximate occlusion sweep of a plan with hierarchical tests [Bittner02, 3.2, 3.4 and 6.6].
+//!
+//! As the sweep of polygons, over pieces and boxes of the plane: nodes of the kD-tree nearest first, each
+//! box tested against the trees before it is opened. The trees merge late, closer occluders.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use antumbra_kernel::{Point2, Rect};
+use antumbra_lines::{DepthSpace, LineSpace, Occluder, OcclusionTree};
+use antumbra_scene::plan::{PieceId, Plan};
+use rustc_hash::FxHashSet;
+
+use crate::occlusion::{BoxTest, SweepOrder};
+
+/// What a segment blocks in one tree.
+#[derive(Clone, Debug)]
+pub struct Blocker<P> {
+    /// The tree.
+    pub tree: usize,
+    /// The window that the lines leave through.
+    pub window: usize,
+    /// The lines.
+    pub piece: P,
+    /// Its number in the line space.
+    pub occluder: Occluder,
+}
+
+type PlaneOf<S> = <<S as Source>::Space as LineSpace>::Plane;
+type PieceOf<S> = <<S as Source>::Space as LineSpace>::Piece;
+
+/// A source of lines in the plane.
+pub trait Source {
+    /// Its line space.
+    type Space: DepthSpace;
+
+    /// The line space.
+    fn space(&mut self) -> &mut Self::Space;
+
+    /// How many occlusion trees it fills.
+    fn tree_count(&self) -> usize;
+
+    /// The box around it.
+    fn bounds(&self) -> Rect;
+
+    /// Whether it meets a closed box. Exact.
+    fn meets_rect(&self, rect: &Rect) -> bool;
+
+    /// The lines that a segment blocks; none if they are no open set.
+    fn blockers(&mut self, piece: [Point2; 2], key: u32, out: &mut Vec<Blocker<PieceOf<Self>>>);
+
+    /// How many occluders the line space has.
+    fn occluder_count(&self) -> usize;
+
+    /// Forgets occluders that left no trace in a tree.
+    fn forget(&mut self, from: usize);
+
+    /// Whether something in a box that the source does not meet may be seen: `false` is exact.
+    fn sees(
+        &mut self,
+        trees: &[OcclusionTree<PlaneOf<Self>>],
+        bounds: &Rect,
+        test: BoxTest,
+    ) -> bool;
+
+    /// The piece of an occluder.
+    fn depth_key(&self, occluder: Occluder) -> u32;
+}
+
+/// What a sweep did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PlanWork {
+    /// Nodes of the kD-tree that were tested.
+    pub nodes_tested: u64,
+    /// Nodes found hidden.
+    pub nodes_culled: u64,
+    /// Leaves opened.
+    pub leaves_opened: u64,
+    /// Blocker cones made.
+    pub blockers: u64,
+    /// Segments inserted.
+    pub inserted: u64,
+    /// Nodes of the occlusion trees.
+    pub tree_nodes: u64,
+}
+
+/// A point of the growth of the trees: blockers inserted so far, nodes so far.
+pub type Growth = Vec<(u64, u64)>;
+
+/// How the sweep goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct How {
+    pub order: SweepOrder,
+    pub test: BoxTest,
+    /// Nothing farther from the source than this, in grid steps, is asked for.
+    pub reach: Option<u64>,
+    pub growth: bool,
+}
+
+/// What a sweep leaves behind.
+#[derive(Clone, Debug)]
+pub(super) struct Swept<S: Source> {
+    pub source: S,
+    pub trees: Vec<OcclusionTree<PlaneOf<S>>>,
+    pub work: PlanWork,
+    pub culled: Vec<u32>,
+    pub opened: Vec<u32>,
+    pub growth: Growth,
+}
+
+/// Sweeps all occluders of a plan.
+pub(super) fn sweep<S: Source>(plan: &Plan, source: S, how: How) -> Swept<S> {
+    let trees = vec![OcclusionTree::new(); source.tree_count()];
+    let mut sweeper = Sweeper {
+        plan,
+        how,
+        seen: FxHashSet::default(),
+        scratch: Vec::new(),
+        out: Swept {
+            source,
+            trees,
+            work: PlanWork::default(),
+            culled: Vec::new(),
+            opened: Vec::new(),
+            growth: Vec::new(),
+        },
+    };
+    if !plan.kd().nodes().is_empty() && !sweeper.out.trees.is_empty() {
+        match how.order {
+            SweepOrder::DepthFirst => sweeper.depth_first(),
+            SweepOrder::Priority => sweeper.by_priority(),
+        }
+    }
+    let nodes: usize = sweeper.out.trees.iter().map(|t| t.nodes().len()).sum();
+    sweeper.out.work.tree_nodes = nodes as u64;
+    sweeper.out
+}
+
+struct Sweeper<'p, S: Source> {
+    plan: &'p Plan,
+    how: How,
+    seen: FxHashSet<PieceId>,
+    scratch: Vec<Blocker<PieceOf<S>>>,
+    out: Swept<S>,
+}
+
+impl<S: Source> Sweeper<'_, S> {
+    fn depth_first(&mut self) {
+        let nodes = self.plan.kd().nodes();
+        let around = self.out.source.bounds();
+        let middle = [
+            i64::from(around.min.x) + i64::from(around.max.x),
+            i64::from(around.min.y) + i64::from(around.max.y),
+        ];
+        let mut stack = vec![0_u32];
+        while let Some(index) = stack.pop() {
+            if !self.opens(index) {
+                continue;
+            }
+            let node = &nodes[index as usize];
+            let Some([lower, upper]) = node.children() else {
+                self.leaf(index);
+                continue;
+            };
+            let (axis, at) = node.split();
+            if middle[axis] < 2 * i64::from(at) {
+                stack.extend([upper, lower]);
+            } else {
+                stack.extend([lower, upper]);
+            }
+        }
+    }
+
+    fn by_priority(&mut self) {
+        let nodes = self.plan.kd().nodes();
+        let around = self.out.source.bounds();
+        let distance = |index: u32| nodes[index as usize].bounds.distance_squared(&around);
+        // Of equally near nodes the later one: it is deeper, so that leaves come soon.
+        let mut queue = BinaryHeap::from([(Reverse(distance(0)), 0_u32)]);
+        while let Some((_, index)) = queue.pop() {
+            if !self.opens(index) {
+                continue;
+            }
+            match nodes[index as usize].children() {
+                Some(children) => queue.extend(children.map(|c| (Reverse(distance(c)), c))),
+                None => self.leaf(index),
+            }
+        }
+    }
+
+    /// Whether anything in a node's closed box may be seen.
+    fn opens(&mut self, index: u32) -> bool {
+        let node = &self.plan.kd().nodes()[index as usize];
+        let out = &mut self.out;
+        if node.children().is_none() && node.count() == 0 {
+            return false;
+        }
+        if let Some(reach) = self.how.reach {
+            let near = node.bounds.distance_squared(&out.source.bounds());
+            if near as u64 > reach.saturating_mul(reach) {
+                return false;
+            }
+        }
+        if self.how.test == BoxTest::Never {
+            return true;
+        }
+        out.work.nodes_tested += 1;
+        let seen = out.source.meets_rect(&node.bounds)
+            || out.source.sees(&out.trees, &node.bounds, self.how.test);
+        if !seen {
+            out.work.nodes_culled += 1;
+            out.culled.push(index);
+        }
+        seen
+    }
+
+    fn leaf(&mut self, index: u32) {
+        self.out.work.leaves_opened += 1;
+        self.out.opened.push(index);
+        let plan = self.plan;
+        for &id in plan.kd().items(&plan.kd().nodes()[index as usize]) {
+            if plan.occludes(id) && self.seen.insert(id) {
+                self.insert(id);
+            }
+        }
+    }
+
+    fn insert(&mut self, id: PieceId) {
+        let out = &mut self.out;
+        let count = out.source.occluder_count();
+        let mut blockers = std::mem::take(&mut self.scratch);
+        let ends = self.plan.pieces()[id.0 as usize];
+        out.source.blockers(ends, id.0, &mut blockers);
+        out.work.blockers += blockers.len() as u64;
+        let mut seen = false;
+        for blocker in blockers.drain(..) {
+            let tree = &mut out.trees[blocker.tree];
+            seen |= tree.insert(out.source.space(), blocker.piece, blocker.occluder);
+        }
+        self.scratch = blockers;
+        if seen {
+            out.work.inserted += 1;
+        } else {
+            out.source.forget(count);
+        }
+        if self.how.growth {
+            let nodes: usize = out.trees.iter().map(|t| t.nodes().len()).sum();
+            out.growth.push((out.work.blockers, nodes as u64));
+        }
+    }
+}
