@@ -14,6 +14,7 @@
 pub mod corpus;
 pub mod determinant;
 pub mod environment;
+pub mod flat;
 pub mod item_buffer;
 pub mod laws;
 pub mod plane;

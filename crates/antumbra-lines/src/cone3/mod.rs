@@ -107,6 +107,8 @@ const NARROW: i64 = 1 << 62;
 const GIVEN: i64 = 1 << 35;
 /// Rows below this are multiplied in doubles without rounding.
 const SMALL: f64 = (1_u64 << 26) as f64;
+/// Sums of magnitudes below this are made of exact terms.
+const EXACT: f64 = (1_u64 << 52) as f64;
 /// 2^-49, see the proof above.
 const FILTER: f64 = 1.0 / (1_u64 << 49) as f64;
 
@@ -279,13 +281,18 @@ impl Space3 {
     fn side(&self, plane: Plane3, ray: &Ray3) -> (Sign, bool) {
         let (h, r) = (&self.filters[plane.0 as usize], &ray.rounded);
         let (a, b, c) = (h[0] * r[0], h[1] * r[1], h[2] * r[2]);
-        let bound = (a.abs() + b.abs() + c.abs()) * FILTER;
+        let size = a.abs() + b.abs() + c.abs();
+        let bound = size * FILTER;
         let value = a + b + c;
         if value > bound {
             return (Sign::Positive, false);
         }
         if value < -bound {
             return (Sign::Negative, false);
+        }
+        // Integers below 2^53 are doubles, and so are all products and sums here.
+        if size < EXACT {
+            return (Sign::of(value), false);
         }
         self.side_by_name(plane, ray)
     }

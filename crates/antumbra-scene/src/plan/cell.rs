@@ -195,7 +195,7 @@ fn fractional(plan: &Plan, outline: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, PlanCe
             return Err(PlanCellError::NotFinite { corner, found });
         }
         let [x, y, _] = plan.grid().to_grid_f64([found[0], found[1], 0.0]);
-        let room = f64::from(LIMIT - 3);
+        let room = f64::from(LIMIT - 8);
         if x.abs() > room || y.abs() > room {
             return Err(PlanCellError::OffGrid { corner, found });
         }
@@ -227,34 +227,56 @@ fn is_convex(outline: &[Point2]) -> bool {
 fn outwards(plan: &Plan, given: &[[f64; 2]]) -> Vec<Point2> {
     let n = given.len();
     let middle = [0, 1].map(|k| given.iter().map(|t| t[k]).sum::<f64>() / n as f64);
-    let mut points = Vec::with_capacity(n);
-    let mut free = Vec::new();
-    for &t in given {
-        match at_wall(plan, t, rounded(middle)) {
-            Some(p) => points.push(p),
-            None => {
-                let away = |k: usize| {
-                    if t[k] > middle[k] {
-                        t[k].ceil()
-                    } else {
-                        t[k].floor()
-                    }
-                };
-                points.push(Point2::new(away(0) as i32, away(1) as i32));
-                free.push(t);
-            }
+    let walled: Vec<Option<Point2>> = given
+        .iter()
+        .map(|&t| at_wall(plan, t, rounded(middle)))
+        .collect();
+    let free: Vec<[f64; 2]> = given
+        .iter()
+        .zip(&walled)
+        .filter_map(|(&t, wall)| wall.is_none().then_some(t))
+        .collect();
+    for attempt in 0..5 {
+        let corner = |i: usize| walled[i].unwrap_or_else(|| pushed(given, middle, i, attempt));
+        let shell = hull(&(0..n).map(corner).collect::<Vec<_>>());
+        if shell.len() >= 3 && free.iter().all(|&t| holds(&shell, t)) {
+            return shell;
         }
     }
-    let shell = hull(&points);
-    if shell.len() >= 3 && free.iter().all(|&t| holds(&shell, t)) {
-        return shell;
-    }
+    let mut points: Vec<Point2> = walled.iter().flatten().copied().collect();
     for t in free {
         for x in [t[0].floor(), t[0].ceil()] {
             points.extend([t[1].floor(), t[1].ceil()].map(|y| Point2::new(x as i32, y as i32)));
         }
     }
     hull(&points)
+}
+
+/// Where corner i goes: away from the middle by less than a step on each axis at the first attempt, which is all
+/// that boxes need; then along both of its edges' normals, a little farther each time.
+fn pushed(given: &[[f64; 2]], middle: [f64; 2], i: usize, attempt: u32) -> Point2 {
+    let n = given.len();
+    let t = given[i];
+    if attempt == 0 {
+        let away = |k: usize| {
+            if t[k] > middle[k] {
+                t[k].ceil()
+            } else {
+                t[k].floor()
+            }
+        };
+        return Point2::new(away(0) as i32, away(1) as i32);
+    }
+    let mut out = t;
+    for (p, q) in [(given[(i + n - 1) % n], t), (t, given[(i + 1) % n])] {
+        let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
+        let outward = (middle[0] - p[0]) * dy - (middle[1] - p[1]) * dx;
+        let length = dx.hypot(dy).copysign(-outward) / (0.25 + 0.5 * f64::from(attempt));
+        if length != 0.0 {
+            out = [out[0] + dy / length, out[1] - dx / length];
+        }
+    }
+    rounded(out)
 }
 
 /// Whether a convex outline holds a point, given to 2^-32 of a step.

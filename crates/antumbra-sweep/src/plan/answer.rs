@@ -58,12 +58,6 @@ impl Funnel {
             lines,
         })
     }
-
-    /// A line strictly inside.
-    #[must_use]
-    pub fn middle(&self) -> PlanLine {
-        PlanLine::sum(&self.lines)
-    }
 }
 
 /// A maximal visible interval of a piece.
@@ -80,8 +74,12 @@ pub struct Fragment {
     pub window: u32,
 }
 
-/// Unites the funnels of each piece to fragments; sorts them by piece.
-pub(super) fn fragments(funnels: &mut [Funnel]) -> Vec<Fragment> {
+/// Unites the funnels of each piece to fragments; sorts them by piece. `middle` gives a line strictly inside
+/// a funnel that touches nothing on its way.
+pub(super) fn fragments(
+    funnels: &mut [Funnel],
+    middle: impl Fn(&Funnel) -> PlanLine,
+) -> Vec<Fragment> {
     funnels.sort_by(|f, g| (f.piece, &f.at, f.window).cmp(&(g.piece, &g.at, g.window)));
     let mut out: Vec<Fragment> = Vec::new();
     let mut widest = 0.0;
@@ -95,7 +93,7 @@ pub(super) fn fragments(funnels: &mut [Funnel]) -> Vec<Fragment> {
                 }
                 if width > widest {
                     widest = width;
-                    (last.witness, last.window) = (funnel.middle(), funnel.window);
+                    (last.witness, last.window) = (middle(funnel), funnel.window);
                 }
             }
             _ => {
@@ -103,7 +101,7 @@ pub(super) fn fragments(funnels: &mut [Funnel]) -> Vec<Fragment> {
                 out.push(Fragment {
                     piece: funnel.piece,
                     at: funnel.at.clone(),
-                    witness: funnel.middle(),
+                    witness: middle(funnel),
                     window: funnel.window,
                 });
             }

@@ -90,6 +90,28 @@ impl PlanLine {
         Self::new(total.map(IBig::from))
     }
 
+    /// A line strictly inside the cone of some lines that avoids some points, none of which all of them pass: sums
+    /// with weights 1, w, w^2 ... do, for all w but a few.
+    #[must_use]
+    pub fn avoiding(lines: &[Self], points: &[Point2]) -> Self {
+        let mut found = Self::sum(lines);
+        let mut w = 1_u32;
+        while points.iter().any(|&p| found.side(p) == 0)
+            && (w as usize) <= lines.len() * points.len() + 1
+        {
+            w += 1;
+            let mut total = [IBig::ZERO, IBig::ZERO, IBig::ZERO];
+            for line in lines {
+                // Horner's rule.
+                for (t, c) in total.iter_mut().zip(line.big()) {
+                    *t = &*t * IBig::from(w) + c;
+                }
+            }
+            found = Self::new(total);
+        }
+        found
+    }
+
     /// The sign of a point's side: positive on the left. Exact.
     #[must_use]
     pub fn side(&self, p: Point2) -> i8 {

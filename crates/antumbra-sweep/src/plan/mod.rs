@@ -11,7 +11,6 @@ mod ratio;
 mod region;
 mod sweep;
 
-use antumbra_lines::{DepthSpace, LineSpace, OcclusionTree};
 use antumbra_scene::plan::{CellShape, PieceId, Plan};
 
 use crate::occlusion::{BoxTest, SweepOrder};
@@ -92,14 +91,18 @@ pub fn look(plan: &Plan, cell: &CellShape, options: &ViewOptions) -> PlanView {
         CellShape::Point(eye) => {
             let mut swept = sweep(plan, PointLines::new(*eye), how);
             let funnels = point_funnels(plan, &mut swept);
-            finish(plan, cell, Vec::new(), funnels, swept, options)
+            let grazing = std::mem::take(&mut swept.source.grazing);
+            let middle = |f: &Funnel| PlanLine::avoiding(&f.lines, &grazing);
+            finish(plan, cell, Vec::new(), (funnels, middle), swept, options)
         }
         CellShape::Segment(_) | CellShape::Region(_) => {
             let source = RegionLines::new(plan, cell.clone(), options.one_tree);
             let mut swept = sweep(plan, source, how);
             let funnels = region_funnels(plan, &mut swept);
             let windows = swept.source.windows().to_vec();
-            finish(plan, cell, windows, funnels, swept, options)
+            let grazing = std::mem::take(&mut swept.source.grazing);
+            let middle = |f: &Funnel| PlanLine::avoiding(&f.lines, &grazing[f.window as usize]);
+            finish(plan, cell, windows, (funnels, middle), swept, options)
         }
     }
 }
@@ -154,11 +157,11 @@ fn finish<S: Source>(
     plan: &Plan,
     cell: &CellShape,
     windows: Vec<Window>,
-    mut funnels: Vec<Funnel>,
+    (mut funnels, middle): (Vec<Funnel>, impl Fn(&Funnel) -> PlanLine),
     swept: Swept<S>,
     options: &ViewOptions,
 ) -> PlanView {
-    let fragments = answer::fragments(&mut funnels);
+    let fragments = answer::fragments(&mut funnels, middle);
     if !options.funnels {
         funnels.clear();
     }

@@ -10,22 +10,25 @@ use crate::occlusion::BoxTest;
 
 /// All lines that leave a point.
 #[derive(Clone, Debug)]
-pub struct PointLines {
+pub(super) struct PointLines {
     space: Pencil,
+    /// Points of segments that are seen edge-on: they block no open set, but no witness may run along them.
+    pub(super) grazing: Vec<Point2>,
 }
 
 impl PointLines {
     /// The lines from a point.
     #[must_use]
-    pub fn new(eye: Point2) -> Self {
+    pub(super) fn new(eye: Point2) -> Self {
         Self {
             space: Pencil::new(eye),
+            grazing: Vec::new(),
         }
     }
 
     /// The line space.
     #[must_use]
-    pub fn lines(&self) -> &Pencil {
+    pub(super) fn lines(&self) -> &Pencil {
         &self.space
     }
 
@@ -87,6 +90,8 @@ impl Source for PointLines {
         let side = orient2d(self.space.eye(), p, q);
         // A segment seen edge-on, or with the eye on it, blocks no open set of lines.
         if side == 0 {
+            let other = if p == self.space.eye() { q } else { p };
+            self.grazing.push(other);
             return;
         }
         let (right, left) = if side > 0 { (p, q) } else { (q, p) };
@@ -97,7 +102,6 @@ impl Source for PointLines {
         let occluder = self.space.occluder(SegmentOccluder { left, right, key });
         out.push(Blocker {
             tree: 0,
-            window: 0,
             piece,
             occluder,
         });

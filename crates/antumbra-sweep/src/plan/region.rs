@@ -8,7 +8,7 @@
 
 use antumbra_kernel::{Point2, Rect, crossing2d, line2d, orient2d};
 use antumbra_lines::{
-    Cone3, Facet, Half, Leaf, LineSpace, Occluder, OcclusionTree, Plane3, PlaneLines, Ray3,
+    Cone3, Facet, Half, Leaf, LineSpace, Occluder, OcclusionTree, Plane3, PlaneLines,
     SegmentOccluder, Visibility, Wall, facet,
 };
 use antumbra_scene::plan::{CellShape, Plan};
@@ -32,6 +32,12 @@ impl Window {
     pub fn beyond(&self, p: Point2) -> i64 {
         -orient2d(self.a, self.b, p)
     }
+
+    /// Whether the box around the window holds a point.
+    fn spans(&self, p: Point2) -> bool {
+        let between = |a: i32, b: i32, v: i32| a.min(b) <= v && v <= a.max(b);
+        between(self.a.x, self.b.x, p.x) && between(self.a.y, self.b.y, p.y)
+    }
 }
 
 /// The facets of a window's lune belong to the problem and need no node.
@@ -39,7 +45,7 @@ const FRAME: Wall = Wall(u32::MAX - 1);
 
 /// All lines that leave a cell.
 #[derive(Clone, Debug)]
-pub struct RegionLines {
+pub(super) struct RegionLines {
     space: PlaneLines,
     cell: CellShape,
     bounds: Rect,
@@ -47,12 +53,15 @@ pub struct RegionLines {
     /// The hyperplanes of a and b.
     frames: Vec<[Plane3; 2]>,
     one_tree: bool,
+    /// For each window, the ends of segments inside the cell that lie on it: they block no open set, but no witness
+    /// may pass them.
+    pub(super) grazing: Vec<Vec<Point2>>,
 }
 
 impl RegionLines {
     /// The lines that leave a region or a segment, in one tree or one for each window.
     #[must_use]
-    pub fn new(plan: &Plan, cell: CellShape, one_tree: bool) -> Self {
+    pub(super) fn new(plan: &Plan, cell: CellShape, one_tree: bool) -> Self {
         let windows = windows(plan, &cell);
         let mut space = PlaneLines::new();
         let frames = windows
@@ -63,6 +72,7 @@ impl RegionLines {
             space,
             bounds: cell.bounds(),
             cell,
+            grazing: vec![Vec::new(); windows.len()],
             windows,
             frames,
             one_tree,
@@ -71,19 +81,19 @@ impl RegionLines {
 
     /// The windows.
     #[must_use]
-    pub fn windows(&self) -> &[Window] {
+    pub(super) fn windows(&self) -> &[Window] {
         &self.windows
     }
 
     /// The line space.
     #[must_use]
-    pub fn lines(&self) -> &PlaneLines {
+    pub(super) fn lines(&self) -> &PlaneLines {
         &self.space
     }
 
     /// The tree of a window.
     #[must_use]
-    pub fn tree_of(&self, window: usize) -> usize {
+    pub(super) fn tree_of(&self, window: usize) -> usize {
         if self.one_tree { 0 } else { window }
     }
 
@@ -171,6 +181,10 @@ impl RegionLines {
         let w = self.windows[window];
         let (op, oq) = (w.beyond(p), w.beyond(q));
         if op <= 0 && oq <= 0 {
+            let on = [(p, op), (q, oq)]
+                .into_iter()
+                .filter(|e| e.1 == 0 && w.spans(e.0));
+            self.grazing[window].extend(on.map(|e| e.0));
             return;
         }
         // c is strictly outside; d is, too, or on the window's line, or inside.
@@ -215,7 +229,6 @@ impl RegionLines {
             let occluder = self.space.occluder(SegmentOccluder { left, right, key });
             out.push(Blocker {
                 tree: self.tree_of(window),
-                window,
                 piece,
                 occluder,
             });

@@ -15,11 +15,9 @@ use crate::occlusion::{BoxTest, SweepOrder};
 
 /// What a segment blocks in one tree.
 #[derive(Clone, Debug)]
-pub struct Blocker<P> {
+pub(super) struct Blocker<P> {
     /// The tree.
     pub tree: usize,
-    /// The window that the lines leave through.
-    pub window: usize,
     /// The lines.
     pub piece: P,
     /// Its number in the line space.
@@ -30,7 +28,7 @@ type PlaneOf<S> = <<S as Source>::Space as LineSpace>::Plane;
 type PieceOf<S> = <<S as Source>::Space as LineSpace>::Piece;
 
 /// A source of lines in the plane.
-pub trait Source {
+pub(super) trait Source {
     /// Its line space.
     type Space: DepthSpace;
 
