@@ -240,7 +240,7 @@ fn meet(
 /// it. Brute force; big integers compare. `Err` says what it touches before, so that it proves nothing.
 ///
 /// # Errors
-/// If the line misses the open cell, runs through an end of a segment before, or along one.
+/// If the line misses the open cell, or runs through an end of a segment, or along one, before.
 pub fn first_on_line(
     segments: &[[GridPoint; 2]],
     line: &[IBig; 3],
@@ -295,7 +295,16 @@ pub fn first_on_line(
             continue;
         }
         if s == 0 && t == 0 {
-            return Err(format!("the line runs along segment {i}"));
+            // Along it: touched where it begins, or at the exit.
+            let along = |p: GridPoint| [&line[1] * p[0] - &line[0] * p[1], IBig::ONE];
+            let (mut near, mut far) = (along(c), along(d));
+            if before(&far, &near) {
+                std::mem::swap(&mut near, &mut far);
+            }
+            if !before(&far, &exit) && touched.as_ref().is_none_or(|(b, _)| before(&near, b)) {
+                touched = Some((near, i));
+            }
+            continue;
         }
         let at = place(c, d);
         if before(&at, &exit) {
@@ -318,7 +327,7 @@ pub fn first_on_line(
     if let Some((at, i)) = touched
         && best.as_ref().is_none_or(|(_, b)| !before(b, &at))
     {
-        return Err(format!("the line touches an end of segment {i}"));
+        return Err(format!("the line touches segment {i} without crossing it"));
     }
     Ok(best.map(|(i, _)| {
         let [c, d] = segments[i];
