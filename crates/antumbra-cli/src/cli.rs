@@ -2,7 +2,9 @@
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::commands::{bake, completions, cull, demo, r#gen, man, map, pair, pvs, ray, shadow};
+use crate::commands::{
+    bake, completions, cull, demo, r#gen, man, map, pair, plan, pvs, ray, shadow,
+};
 use crate::output::Output;
 use crate::values::positive;
 
@@ -25,6 +27,7 @@ Examples:
   antumbra map house.glb --eye -12,-9,6 --to 4,3,2 --svg house.svg
   antumbra shadow house.glb --light 3,2,2.4 -o lit.glb
   antumbra cull house.glb --path walk.path --verify
+  antumbra plan office.geojson --cell \"4,3 8,3 8,6 4,6\" --svg office.svg
 
 Exit codes: 0 done; 2 wrong usage; 3 damaged or impossible content; 4 a path that cannot be
 read or written; 5 stopped, with what was finished saved.";
@@ -84,6 +87,8 @@ pub(crate) enum Command {
     Shadow(shadow::ShadowArgs),
     /// Cull the frames of a camera path in real time: what may be seen, never wrong
     Cull(Box<cull::CullArgs>),
+    /// See what a room, a street or a point of a floor plan or city map sees, in the plane
+    Plan(plan::PlanArgs),
     /// Make a synthetic scene
     Gen(r#gen::GenArgs),
     /// Bake, check and draw a small office that is built in

@@ -116,7 +116,8 @@ pub(crate) fn load(
     })
 }
 
-fn read_failure(error: &ReadError) -> Failure {
+/// A file that cannot be read, by what is wrong.
+pub(crate) fn read_failure(error: &ReadError) -> Failure {
     if error.is_path_error() {
         Failure::Path(error.to_string())
     } else {

@@ -33,6 +33,11 @@ pub enum SegmentOrder {
 }
 
 impl SegmentOccluder {
+    /// The key of a segment that is looked at, not through: what lies along it does not hide it.
+    pub const TARGET: u32 = u32::MAX;
+    /// The key of the side of a box.
+    pub const SIDE: u32 = u32::MAX - 1;
+
     /// How far a point lies behind the segment: negative in front, zero on its line. 51 bits.
     #[inline]
     #[must_use]
@@ -45,6 +50,9 @@ impl SegmentOccluder {
     #[must_use]
     pub fn order(&self, old: &Self) -> SegmentOrder {
         let (l, r) = (old.depth(self.left), old.depth(self.right));
+        if l == 0 && r == 0 && self.key == Self::TARGET {
+            return SegmentOrder::InFront;
+        }
         if l >= 0 && r >= 0 {
             return SegmentOrder::Behind;
         }

@@ -8,6 +8,7 @@ pub(crate) mod r#gen;
 pub(crate) mod man;
 pub(crate) mod map;
 pub(crate) mod pair;
+pub(crate) mod plan;
 pub(crate) mod pvs;
 pub(crate) mod ray;
 pub(crate) mod shadow;
@@ -27,6 +28,7 @@ pub(crate) fn run(cli: Cli) -> Result<(), Failure> {
         Command::Map(args) => map::run(&args, &global),
         Command::Shadow(args) => shadow::run(&args, &global),
         Command::Cull(args) => cull::run(&args, &global),
+        Command::Plan(args) => plan::run(&args, &global),
         Command::Gen(args) => r#gen::run(&args, &global),
         Command::Demo(args) => demo::run(&args, &global),
         Command::Completions(args) => completions::run(&args),

@@ -191,7 +191,7 @@ fn snap(
             worst = worst.max((t[0] - r[0]).hypot(t[1] - r[1]));
         }
         if ends[0] == ends[1] {
-            report.points.push(SegmentId(i as u32));
+            report.points.push((SegmentId(i as u32), ends[0]));
         }
         out.push(Snapped { ends, moved });
     }

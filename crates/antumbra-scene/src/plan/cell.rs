@@ -67,6 +67,22 @@ impl CellShape {
         }
     }
 
+    /// Whether two closed cells share a point. Exact.
+    #[must_use]
+    pub fn meets(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Point(p), _) => other.meets_segment([*p, *p]),
+            (_, Self::Point(p)) => self.meets_segment([*p, *p]),
+            (Self::Segment(s), _) => other.meets_segment(*s),
+            (_, Self::Segment(s)) => self.meets_segment(*s),
+            _ => {
+                self.bounds().touches(&other.bounds())
+                    && self.parted(other.corners()).is_none()
+                    && other.parted(self.corners()).is_none()
+            }
+        }
+    }
+
     /// Whether a segment meets the open interior of a region. Exact.
     #[must_use]
     pub fn enters(&self, [a, b]: [Point2; 2]) -> bool {

@@ -75,8 +75,8 @@ pub struct Owner {
 /// What was done to the segments of a plan.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlanReport {
-    /// Segments whose ends coincide on the grid: they block no open set of lines.
-    pub points: Vec<SegmentId>,
+    /// Segments whose ends coincide on the grid, and where: they block no open set of lines.
+    pub points: Vec<(SegmentId, Point2)>,
     /// Pieces that more than one segment owns.
     pub shared: usize,
     /// Corners put into foreign segments that they touch.
@@ -149,6 +149,12 @@ impl Plan {
     #[must_use]
     pub fn bounds(&self) -> Option<Rect> {
         (!self.ends.is_empty()).then(|| self.kd.nodes()[0].bounds)
+    }
+
+    /// The segments that are points on the grid.
+    #[must_use]
+    pub fn points(&self) -> &[(SegmentId, Point2)] {
+        &self.report.points
     }
 
     /// What was done to the input.

@@ -5,7 +5,9 @@
 //! sees of it. The fragments of a segment are the unions of these intervals, which depend on what is seen
 //! alone and not on how the tree cuts it into funnels.
 
-use antumbra_lines::{Leaf, LineSpace, Occluder, OcclusionTree, Slot};
+use antumbra_lines::{
+    Cut, DepthSpace, Half, Leaf, LineSpace, Occluder, OcclusionTree, Order, Slot, Wall,
+};
 use antumbra_scene::plan::{PieceId, Plan};
 
 use super::line::PlanLine;
@@ -128,5 +130,42 @@ pub(super) fn blocked<S: LineSpace>(
             found.push(piece);
         });
         found.drain(..).for_each(|piece| space.discard(piece));
+    }
+}
+
+/// Visits the parts of a piece on which an occluder that is not in the tree would come first
+/// [Bittner02, 6.5.3].
+pub(super) fn unblocked<S: DepthSpace>(
+    space: &mut S,
+    tree: &OcclusionTree<S::Plane>,
+    piece: S::Piece,
+    occluder: Occluder,
+    mut visit: impl FnMut(&S::Piece),
+) {
+    let mut reached = Vec::new();
+    tree.visit(space, Slot::Root, piece, |leaf, piece| {
+        reached.push((leaf, piece))
+    });
+    for (leaf, piece) in reached {
+        let old = match leaf {
+            Leaf::Outside => continue,
+            Leaf::Open => {
+                visit(&piece);
+                continue;
+            }
+            Leaf::Blocked(old) => old,
+        };
+        match space.order(&piece, occluder, old) {
+            Order::Behind => {}
+            Order::InFront => visit(&piece),
+            Order::Crossing(plane, front) => match space.cut(piece, plane, Wall::NONE) {
+                Cut::Whole(half, piece) if half == front => visit(&piece),
+                Cut::Whole(..) => {}
+                Cut::Parts([negative, positive]) => visit(match front {
+                    Half::Negative => &negative,
+                    Half::Positive => &positive,
+                }),
+            },
+        }
     }
 }

@@ -27,6 +27,12 @@ impl PlanLine {
         }
     }
 
+    /// The line from one point to another.
+    #[must_use]
+    pub fn through(a: Point2, b: Point2) -> Self {
+        Self::Small(antumbra_kernel::line2d(a, b))
+    }
+
     /// From a ray of line space.
     #[must_use]
     pub fn of_ray(ray: &ExactRay) -> Self {

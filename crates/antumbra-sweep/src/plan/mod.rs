@@ -9,8 +9,10 @@ mod line;
 mod point;
 mod ratio;
 mod region;
+mod sight;
 mod sweep;
 
+use antumbra_lines::{LineSpace, OcclusionTree};
 use antumbra_scene::plan::{CellShape, PieceId, Plan};
 
 use crate::occlusion::{BoxTest, SweepOrder};
@@ -22,6 +24,7 @@ use point::PointLines;
 pub use ratio::Ratio;
 use region::RegionLines;
 pub use region::Window;
+pub use sight::{Sight, sights};
 pub use sweep::{Growth, PlanWork};
 use sweep::{How, Source, Swept, sweep};
 
@@ -46,7 +49,7 @@ impl Default for ViewOptions {
     fn default() -> Self {
         Self {
             order: SweepOrder::Priority,
-            test: BoxTest::Conservative,
+            test: BoxTest::Exact,
             one_tree: false,
             reach: None,
             funnels: false,
@@ -113,44 +116,71 @@ fn region_funnels(plan: &Plan, swept: &mut Swept<RegionLines>) -> Vec<Funnel> {
     for window in 0..source.windows().len() {
         let tree = &swept.trees[source.tree_of(window)];
         let roots = source.roots(window, tree);
-        let mut cells = Vec::new();
-        answer::blocked(source.space(), tree, roots, |piece, occluder| {
-            cells.push((piece.corners.clone(), occluder));
-        });
-        for (corners, occluder) in cells {
-            let lines = corners
-                .iter()
-                .map(|c| PlanLine::of_ray(&source.lines().exact(&c.ray)))
-                .collect();
-            let piece = PieceId(source.depth_key(occluder));
-            out.extend(Funnel::new(plan, window as u32, piece, lines));
-        }
+        blocked_funnels(plan, source, tree, (window, roots), &mut out);
     }
+    glass_funnels(plan, swept, &mut out);
     out
 }
 
 fn point_funnels(plan: &Plan, swept: &mut Swept<PointLines>) -> Vec<Funnel> {
     let mut out = Vec::new();
     let source = &mut swept.source;
-    let eye = source.lines().eye().to_i64().map(i128::from);
     let roots = source.roots();
-    let mut cells = Vec::new();
-    answer::blocked(source.space(), &swept.trees[0], roots, |piece, occluder| {
-        cells.push((piece.rays, occluder));
-    });
-    for (rays, occluder) in cells {
-        let lines = rays
-            .iter()
-            .map(|ray| {
-                let [dx, dy] = ray.exact;
-                let line = [-dy, dx, eye[0] * dy - eye[1] * dx];
-                PlanLine::new(line.map(dashu_int::IBig::from))
-            })
-            .collect();
-        let piece = PieceId(source.depth_key(occluder));
-        out.extend(Funnel::new(plan, 0, piece, lines));
-    }
+    blocked_funnels(plan, source, &swept.trees[0], (0, roots), &mut out);
+    glass_funnels(plan, swept, &mut out);
     out
+}
+
+/// The blocked cells of a tree as funnels.
+fn blocked_funnels<S: Source>(
+    plan: &Plan,
+    source: &mut S,
+    tree: &OcclusionTree<sweep::PlaneOf<S>>,
+    (window, roots): (usize, Vec<sweep::PieceOf<S>>),
+    out: &mut Vec<Funnel>,
+) {
+    let mut cells = Vec::new();
+    answer::blocked(source.space(), tree, roots, |piece, occluder| {
+        cells.push((piece.clone(), occluder));
+    });
+    for (piece, occluder) in cells {
+        let lines = source.extremal(&piece);
+        let id = PieceId(source.depth_key(occluder));
+        out.extend(Funnel::new(plan, window as u32, id, lines));
+        source.space().discard(piece);
+    }
+}
+
+/// The funnels of pieces that block nothing, in the leaves that were opened.
+fn glass_funnels<S: Source>(plan: &Plan, swept: &mut Swept<S>, out: &mut Vec<Funnel>) {
+    let opened = swept.opened.iter().map(|&i| &plan.kd().nodes()[i as usize]);
+    let mut glass: Vec<PieceId> = opened
+        .flat_map(|node| plan.kd().items(node))
+        .copied()
+        .filter(|&id| !plan.occludes(id))
+        .collect();
+    glass.sort_unstable();
+    glass.dedup();
+    let mut blockers = Vec::new();
+    for id in glass {
+        let source = &mut swept.source;
+        source.blockers(plan.pieces()[id.0 as usize], id.0, &mut blockers);
+        for blocker in blockers.drain(..) {
+            let tree = &swept.trees[blocker.tree];
+            let mut seen = Vec::new();
+            answer::unblocked(
+                source.space(),
+                tree,
+                blocker.piece,
+                blocker.occluder,
+                |piece| seen.push(piece.clone()),
+            );
+            for piece in seen {
+                let lines = source.extremal(&piece);
+                out.extend(Funnel::new(plan, blocker.window as u32, id, lines));
+            }
+        }
+    }
 }
 
 fn finish<S: Source>(

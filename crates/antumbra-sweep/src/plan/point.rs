@@ -2,9 +2,12 @@
 
 use antumbra_kernel::{Point2, Rect, orient2d};
 use antumbra_lines::{
-    Direction, Leaf, Occluder, OcclusionTree, Pencil, SegmentOccluder, Visibility, Wedge,
+    Direction, Leaf, Occluder, OcclusionTree, Pencil, Ray2, SegmentOccluder, Visibility, Wedge,
 };
 
+use dashu_int::IBig;
+
+use super::line::PlanLine;
 use super::sweep::{Blocker, Source};
 use crate::occlusion::BoxTest;
 
@@ -24,12 +27,6 @@ impl PointLines {
             space: Pencil::new(eye),
             grazing: Vec::new(),
         }
-    }
-
-    /// The line space.
-    #[must_use]
-    pub(super) fn lines(&self) -> &Pencil {
-        &self.space
     }
 
     fn away(&self, p: Point2) -> [i64; 2] {
@@ -102,6 +99,7 @@ impl Source for PointLines {
         let occluder = self.space.occluder(SegmentOccluder { left, right, key });
         out.push(Blocker {
             tree: 0,
+            window: 0,
             piece,
             occluder,
         });
@@ -152,6 +150,20 @@ impl Source for PointLines {
         };
         self.space.rewind(filled);
         state != Visibility::Invisible
+    }
+
+    fn extremal(&self, piece: &Wedge) -> Vec<PlanLine> {
+        let [ex, ey] = self.space.eye().to_i64().map(i128::from);
+        let line = |ray: &Ray2| {
+            let [dx, dy] = ray.exact;
+            PlanLine::new([-dy, dx, ex * dy - ey * dx].map(IBig::from))
+        };
+        piece.rays.iter().map(line).collect()
+    }
+
+    fn is_behind(&self, occluder: Occluder, points: &[Point2]) -> bool {
+        let segment = self.space.segment(occluder);
+        points.iter().all(|&p| segment.depth(p) >= 0)
     }
 
     fn depth_key(&self, occluder: Occluder) -> u32 {

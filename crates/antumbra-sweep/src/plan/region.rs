@@ -8,11 +8,12 @@
 
 use antumbra_kernel::{Point2, Rect, crossing2d, line2d, orient2d};
 use antumbra_lines::{
-    Cone3, Facet, Half, Leaf, LineSpace, Occluder, OcclusionTree, Plane3, PlaneLines,
+    Cone3, Corner3, Facet, Half, Leaf, LineSpace, Occluder, OcclusionTree, Plane3, PlaneLines,
     SegmentOccluder, Visibility, Wall, facet,
 };
 use antumbra_scene::plan::{CellShape, Plan};
 
+use super::line::PlanLine;
 use super::sweep::{Blocker, Source};
 use crate::occlusion::BoxTest;
 
@@ -83,12 +84,6 @@ impl RegionLines {
     #[must_use]
     pub(super) fn windows(&self) -> &[Window] {
         &self.windows
-    }
-
-    /// The line space.
-    #[must_use]
-    pub(super) fn lines(&self) -> &PlaneLines {
-        &self.space
     }
 
     /// The tree of a window.
@@ -229,6 +224,7 @@ impl RegionLines {
             let occluder = self.space.occluder(SegmentOccluder { left, right, key });
             out.push(Blocker {
                 tree: self.tree_of(window),
+                window,
                 piece,
                 occluder,
             });
@@ -338,7 +334,7 @@ impl RegionLines {
         Some(Cone3 {
             corners: rays
                 .into_iter()
-                .map(|ray| antumbra_lines::Corner3 {
+                .map(|ray| Corner3 {
                     ray,
                     plane: a,
                     side: Half::Positive,
@@ -361,7 +357,7 @@ impl RegionLines {
                 .iter()
                 .any(|&p| orient2d(side[0], side[1], p) < 0);
             if facing && side[0] != side[1] {
-                self.block(window, side, u32::MAX, &mut sides);
+                self.block(window, side, SegmentOccluder::SIDE, &mut sides);
             }
         }
         let mut seen = false;
@@ -435,6 +431,16 @@ impl Source for RegionLines {
             self.space.rewind(mark);
             seen
         })
+    }
+
+    fn extremal(&self, piece: &Cone3) -> Vec<PlanLine> {
+        let exact = |c: &Corner3| PlanLine::of_ray(&self.space.exact(&c.ray));
+        piece.corners.iter().map(exact).collect()
+    }
+
+    fn is_behind(&self, occluder: Occluder, points: &[Point2]) -> bool {
+        let segment = self.space.segment(occluder);
+        points.iter().all(|&p| segment.depth(p) >= 0)
     }
 
     fn depth_key(&self, occluder: Occluder) -> u32 {

@@ -11,6 +11,7 @@ use antumbra_lines::{DepthSpace, LineSpace, Occluder, OcclusionTree};
 use antumbra_scene::plan::{PieceId, Plan};
 use rustc_hash::FxHashSet;
 
+use super::line::PlanLine;
 use crate::occlusion::{BoxTest, SweepOrder};
 
 /// What a segment blocks in one tree.
@@ -18,14 +19,16 @@ use crate::occlusion::{BoxTest, SweepOrder};
 pub(super) struct Blocker<P> {
     /// The tree.
     pub tree: usize,
+    /// The window that the lines leave through.
+    pub window: usize,
     /// The lines.
     pub piece: P,
     /// Its number in the line space.
     pub occluder: Occluder,
 }
 
-type PlaneOf<S> = <<S as Source>::Space as LineSpace>::Plane;
-type PieceOf<S> = <<S as Source>::Space as LineSpace>::Piece;
+pub(super) type PlaneOf<S> = <<S as Source>::Space as LineSpace>::Plane;
+pub(super) type PieceOf<S> = <<S as Source>::Space as LineSpace>::Piece;
 
 /// A source of lines in the plane.
 pub(super) trait Source {
@@ -61,6 +64,12 @@ pub(super) trait Source {
         test: BoxTest,
     ) -> bool;
 
+    /// The extreme rays of a piece as lines, in turning order.
+    fn extremal(&self, piece: &PieceOf<Self>) -> Vec<PlanLine>;
+
+    /// Whether points lie behind an occluder, or on its line. Exact.
+    fn is_behind(&self, occluder: Occluder, points: &[Point2]) -> bool;
+
     /// The piece of an occluder.
     fn depth_key(&self, occluder: Occluder) -> u32;
 }
@@ -80,6 +89,18 @@ pub struct PlanWork {
     pub inserted: u64,
     /// Nodes of the occlusion trees.
     pub tree_nodes: u64,
+}
+
+impl PlanWork {
+    /// Adds the work of another sweep.
+    pub fn add(&mut self, other: &Self) {
+        self.nodes_tested += other.nodes_tested;
+        self.nodes_culled += other.nodes_culled;
+        self.leaves_opened += other.leaves_opened;
+        self.blockers += other.blockers;
+        self.inserted += other.inserted;
+        self.tree_nodes += other.tree_nodes;
+    }
 }
 
 /// A point of the growth of the trees: blockers inserted so far, nodes so far.

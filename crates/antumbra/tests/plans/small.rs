@@ -1,8 +1,8 @@
 //! Tiny scenes on a tiny lattice, where everything touches, crosses, overlaps and lines up.
 
 use antumbra::plan::{
-    BoxTest, CellShape, Plan, PlanCell, PlanInput, PlanOptions, PlanSegment, PlanView, SweepOrder,
-    ViewOptions, look,
+    BoxTest, CellShape, Plan, PlanCell, PlanInput, PlanOptions, PlanSegment, PlanView, SeeOptions,
+    SweepOrder, look,
 };
 use antumbra_testkit::environment::long;
 use antumbra_testkit::flat::{FlatScene, GridPoint};
@@ -52,16 +52,16 @@ fn random_cell(random: &mut Random, size: i64, kind: usize) -> Vec<[f64; 2]> {
 }
 
 /// All ways to look must give the same fragments.
-pub(crate) fn ways() -> Vec<ViewOptions> {
+pub(crate) fn ways() -> Vec<SeeOptions> {
     let mut out = Vec::new();
     for order in [SweepOrder::Priority, SweepOrder::DepthFirst] {
         for test in [BoxTest::Exact, BoxTest::Conservative, BoxTest::Never] {
             for one_tree in [false, true] {
-                out.push(ViewOptions {
+                out.push(SeeOptions {
                     order,
                     test,
                     one_tree,
-                    ..ViewOptions::default()
+                    ..SeeOptions::default()
                 });
             }
         }
@@ -160,7 +160,7 @@ fn tiny_scenes_agree_with_the_oracle_and_with_themselves() {
         let cell = PlanCell::new(&plan, &outline).expect("a cell");
         let oracle = oracle(&plan);
         for shape in &cell.parts {
-            let view = look(&plan, shape, &ViewOptions::default());
+            let view = look(&plan, shape, &SeeOptions::default());
             confirm(&oracle, &view);
             hits += shoot(&plan, &oracle, &view, 60, &mut random);
             if !matches!(shape, CellShape::Point(_)) {
@@ -173,7 +173,7 @@ fn tiny_scenes_agree_with_the_oracle_and_with_themselves() {
             random.shuffle(&mut shuffled);
             let again = build(&shuffled, 3);
             assert_eq!(again.pieces(), plan.pieces());
-            same(&view, &look(&again, shape, &ViewOptions::default()));
+            same(&view, &look(&again, shape, &SeeOptions::default()));
         }
     }
     assert!(hits > scenes * 20, "only {hits} hits");

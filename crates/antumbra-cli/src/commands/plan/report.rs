@@ -1,0 +1,212 @@
+//! What `plan` says: JSON for scripts, GeoJSON for maps, a sentence for people.
+
+use antumbra::plan::{
+    Accuracy, Fragment, Funnel, Plan, PlanInput, PlanLine, PlanView, Seen, Sight,
+};
+use serde_json::{Map, Value, json};
+
+use super::PlanArgs;
+use super::cells::NamedCell;
+
+fn accuracy(a: Accuracy) -> &'static str {
+    match a {
+        Accuracy::Exact => "exact",
+        Accuracy::Conservative => "conservative",
+        Accuracy::AggressiveBelow(_) => "aggressive",
+    }
+}
+
+/// The keys of one cell.
+fn cell(args: &PlanArgs, plan: &Plan, seen: &Seen) -> Map<String, Value> {
+    let visible: Vec<Value> = seen
+        .segments
+        .iter()
+        .map(|s| {
+            let mut entry = json!({"id": s.segment.0, "fragments": s.fragments});
+            if s.touching {
+                entry["touching"] = json!(true);
+            }
+            entry
+        })
+        .collect();
+    let mut out = Map::new();
+    out.insert("visible".to_owned(), json!(visible));
+    out.insert("accuracy".to_owned(), json!(accuracy(seen.accuracy)));
+    out.insert("tree_nodes".to_owned(), json!(seen.work.tree_nodes));
+    out.insert("blockers".to_owned(), json!(seen.work.blockers));
+    out.insert("kd_nodes_tested".to_owned(), json!(seen.work.nodes_tested));
+    if args.witnesses {
+        let lines = seen
+            .parts
+            .iter()
+            .flat_map(|v| v.fragments.iter().map(move |f| (v, f)));
+        let lines: Vec<Value> = lines.map(|(v, f)| witness(plan, v, f)).collect();
+        out.insert("witnesses".to_owned(), json!(lines));
+    }
+    out
+}
+
+/// A line that sees a fragment: from the edge of the cell to the segment, and exactly as `a x + b y + c` in grid
+/// steps from the grid's origin.
+fn witness(plan: &Plan, view: &PlanView, f: &Fragment) -> Value {
+    let target = plan.pieces()[f.piece.0 as usize];
+    let to = meet(&f.witness, target.map(|p| p.to_f64()));
+    let from = match view.windows.get(f.window as usize) {
+        Some(w) => meet(&f.witness, [w.a.to_f64(), w.b.to_f64()]),
+        None => view.cell.corners()[0].to_f64(),
+    };
+    let ids: Vec<u32> = plan.owners(f.piece).iter().map(|o| o.segment.0).collect();
+    let line = f.witness.big().map(|c| c.to_string());
+    json!({"ids": ids, "from": plan.to_scene_f64(from), "to": plan.to_scene_f64(to), "line": line})
+}
+
+/// Where a line meets a segment, rounded.
+pub(super) fn meet(line: &PlanLine, [p, q]: [[f64; 2]; 2]) -> [f64; 2] {
+    let l = line.rounded();
+    let at = |p: [f64; 2]| l[0] * p[0] + l[1] * p[1] + l[2];
+    let (u, v) = (at(p), at(q));
+    let t = if u == v {
+        0.0
+    } else {
+        (u / (u - v)).clamp(0.0, 1.0)
+    };
+    [0, 1].map(|k| p[k] + t * (q[k] - p[k]))
+}
+
+pub(super) fn seen(
+    args: &PlanArgs,
+    plan: &Plan,
+    outlines: &[NamedCell],
+    seen: &[Seen],
+    result: &mut Map<String, Value>,
+) -> String {
+    if args.cells.is_none() {
+        let one = &seen[0];
+        result.extend(cell(args, plan, one));
+        let fragments: usize = one.segments.iter().map(|s| s.fragments.len()).sum();
+        return format!(
+            "{} of {} segments visible in {fragments} fragments ({}), {} tree nodes",
+            one.segments.len(),
+            plan.segment_count(),
+            accuracy(one.accuracy),
+            one.work.tree_nodes
+        );
+    }
+    let cells: Vec<Value> = outlines
+        .iter()
+        .zip(seen)
+        .map(|(named, one)| {
+            let mut entry = cell(args, plan, one);
+            entry.insert("id".to_owned(), id_value(&named.id));
+            Value::Object(entry)
+        })
+        .collect();
+    let total: usize = seen.iter().map(|s| s.segments.len()).sum();
+    let mean = total as f64 / seen.len().max(1) as f64;
+    let nodes: u64 = seen.iter().map(|s| s.work.tree_nodes).sum();
+    result.insert("cells".to_owned(), json!(cells));
+    result.insert("visible_mean".to_owned(), json!(mean));
+    result.insert("tree_nodes".to_owned(), json!(nodes));
+    format!(
+        "{} cells see {mean:.1} of {} segments on average",
+        seen.len(),
+        plan.segment_count()
+    )
+}
+
+/// Numbers stay numbers.
+fn id_value(id: &str) -> Value {
+    id.parse::<i64>().map_or_else(|_| json!(id), |n| json!(n))
+}
+
+pub(super) fn sight(plan: &Plan, sight: Option<Sight>, result: &mut Map<String, Value>) -> String {
+    let _ = plan;
+    let (verdict, text) = match &sight {
+        None => ("hidden", "the cells do not see each other"),
+        Some(Sight::Touching) => ("visible", "the cells touch"),
+        Some(Sight::Line(line)) => {
+            let line = line.big().map(|c| c.to_string());
+            result.insert("line".to_owned(), json!(line));
+            ("visible", "the cells see each other")
+        }
+    };
+    result.insert("verdict".to_owned(), json!(verdict));
+    text.to_owned()
+}
+
+/// The visible fragments as a feature each.
+pub(super) fn geojson(
+    plan: &Plan,
+    input: &PlanInput,
+    outlines: &[NamedCell],
+    seen: &[Seen],
+) -> Value {
+    let mut features = Vec::new();
+    for (named, one) in outlines.iter().zip(seen) {
+        for s in &one.segments {
+            let segment = &input.segments[s.segment.0 as usize];
+            let [p, q] = segment.ends;
+            let at = |t: f64| [0, 1].map(|k| p[k] + t * (q[k] - p[k]));
+            let lines: Vec<[[f64; 2]; 2]> =
+                s.fragments.iter().map(|f| [at(f[0]), at(f[1])]).collect();
+            features.push(json!({
+                "type": "Feature",
+                "properties": {
+                    "cell": id_value(&named.id),
+                    "segment": s.segment.0,
+                    "class": input.classes[segment.class as usize],
+                    "feature": segment.feature,
+                    "fragments": s.fragments,
+                },
+                "geometry": {"type": "MultiLineString", "coordinates": lines},
+            }));
+        }
+    }
+    let mut out = json!({"type": "FeatureCollection", "features": features});
+    if let Some(middle) = input.projected_around {
+        out["projected_around"] = json!(middle);
+    }
+    let _ = plan;
+    out
+}
+
+/// The funnels: which part of a segment is seen through which part of a cell's edge, and their extremal lines.
+pub(super) fn funnels(plan: &Plan, outlines: &[NamedCell], seen: &[Seen]) -> Value {
+    let cells = outlines.iter().zip(seen).map(|(named, one)| {
+        let funnels: Vec<Value> = one
+            .parts
+            .iter()
+            .flat_map(|view| view.funnels.iter().map(move |f| funnel(plan, view, f)))
+            .collect();
+        json!({"id": id_value(&named.id), "funnels": funnels})
+    });
+    json!({"cells": cells.collect::<Vec<_>>()})
+}
+
+fn funnel(plan: &Plan, view: &PlanView, f: &Funnel) -> Value {
+    let target = plan.pieces()[f.piece.0 as usize].map(|p| p.to_f64());
+    let ids: Vec<u32> = plan.owners(f.piece).iter().map(|o| o.segment.0).collect();
+    let window = view.windows.get(f.window as usize);
+    let ends = |line: &PlanLine| {
+        let from = match window {
+            Some(w) => meet(line, [w.a.to_f64(), w.b.to_f64()]),
+            None => view.cell.corners()[0].to_f64(),
+        };
+        json!([
+            plan.to_scene_f64(from),
+            plan.to_scene_f64(meet(line, target))
+        ])
+    };
+    let lines: Vec<Value> = f.lines.iter().map(ends).collect();
+    let exact: Vec<[String; 3]> = f
+        .lines
+        .iter()
+        .map(|l| l.big().map(|c| c.to_string()))
+        .collect();
+    let edge = window.map(|w| [plan.to_scene(w.a), plan.to_scene(w.b)]);
+    let span = [0, 1].map(|k| {
+        let t = f.at[k].value();
+        plan.to_scene_f64([0, 1].map(|i| target[0][i] + t * (target[1][i] - target[0][i])))
+    });
+    json!({"ids": ids, "window": edge, "sees": span, "extremal_lines": lines, "exact": exact})
+}
