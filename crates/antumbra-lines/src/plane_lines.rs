@@ -48,6 +48,19 @@ impl PlaneLines {
         self.space.wide_plane(point.map(I256::from_i128))
     }
 
+    /// The homogeneous point of a hyperplane.
+    ///
+    /// # Panics
+    /// If there is no such hyperplane.
+    #[must_use]
+    pub fn point_of(&self, plane: Plane3) -> [i128; 3] {
+        // Every row here was made from 128 bits.
+        self.space.row(plane).map(|c| {
+            let [low, high, ..] = *c.limbs();
+            (u128::from(low) | u128::from(high) << 64) as i128
+        })
+    }
+
     /// Adds an occluder.
     pub fn occluder(&mut self, segment: SegmentOccluder) -> Occluder {
         self.occluders.push(segment);

@@ -21,11 +21,14 @@ mod size;
 mod verdict;
 
 pub use caster::Caster;
-pub use check::{CheckReport, check_cell};
+pub use check::{CheckReport, PlanCheck, check_cell, check_plan};
 pub use line::FineLine;
 pub use pair::{PairResult, Surface, Verdict};
 pub use point::PointVerdict;
-pub use proof::{CellProof, Claim, GateProof, Node, ProofError, Reason, RowName, Target, Tree};
+pub use proof::{
+    CellProof, Claim, GateProof, Node, PlanProof, PlanProofChild, PlanProofFragment, PlanProofNode,
+    PlanProofTree, ProofError, Reason, RowName, Target, Tree,
+};
 pub use ray::{Hit, Trace};
 pub use region::{BakeOptions, Baker};
 pub use search::Work;

@@ -2,8 +2,12 @@
 //!
 //! The format and its meaning are described in `docs/formats/certificates.md`.
 
+mod plan;
+
 use antumbra_kernel::{Aabb, Point};
 use antumbra_scene::PolygonId;
+
+pub use plan::{PlanProof, PlanProofChild, PlanProofFragment, PlanProofNode, PlanProofTree};
 
 /// What a claim is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

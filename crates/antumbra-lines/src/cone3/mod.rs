@@ -170,6 +170,15 @@ impl Space3 {
         Plane3(self.rows.len() as u32 - 1)
     }
 
+    /// The row of a hyperplane.
+    ///
+    /// # Panics
+    /// If there is no such hyperplane.
+    #[must_use]
+    pub fn row(&self, plane: Plane3) -> [I256; 3] {
+        self.rows[plane.0 as usize].wide()
+    }
+
     /// A ray by its components.
     ///
     /// # Panics

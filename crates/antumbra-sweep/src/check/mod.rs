@@ -13,6 +13,7 @@ mod middle;
 mod modular;
 mod numbers;
 mod piece;
+mod plan;
 mod real;
 mod rows;
 #[cfg(test)]
@@ -26,6 +27,8 @@ use antumbra_scene::{
     BoxContact, KdNode, ObjectId, PolygonId, PolygonRef, Scene, ViewCell, box_contact,
     polygons_touch,
 };
+
+pub use plan::{PlanCheck, check_plan};
 
 use crate::proof::{CellProof, Claim, Target};
 use crate::verdict::{Accuracy, VisibleEntry};

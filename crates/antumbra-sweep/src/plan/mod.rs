@@ -5,6 +5,7 @@
 //! opened. The leaves of the finished trees are the funnels, from which come the visible fragments.
 
 mod answer;
+mod certificate;
 mod line;
 mod point;
 mod ratio;
@@ -16,6 +17,7 @@ use antumbra_lines::{LineSpace, OcclusionTree};
 use antumbra_scene::plan::{CellShape, PieceId, Plan};
 
 use crate::occlusion::{BoxTest, SweepOrder};
+use crate::proof::PlanProof;
 use crate::verdict::Accuracy;
 
 pub use answer::{Fragment, Funnel};
@@ -41,6 +43,8 @@ pub struct ViewOptions {
     pub reach: Option<u64>,
     /// Keep the funnels.
     pub funnels: bool,
+    /// Keep the certificate (not of points, and not with a reach).
+    pub proof: bool,
     /// Record how the trees grow.
     pub growth: bool,
 }
@@ -53,6 +57,7 @@ impl Default for ViewOptions {
             one_tree: false,
             reach: None,
             funnels: false,
+            proof: false,
             growth: false,
         }
     }
@@ -71,6 +76,8 @@ pub struct PlanView {
     pub fragments: Vec<Fragment>,
     /// The funnels, by piece, if they were asked for.
     pub funnels: Vec<Funnel>,
+    /// The certificate, if it was asked for.
+    pub proof: Option<PlanProof>,
     /// Exact, or conservative if an occluder meets the open interior of the cell.
     pub accuracy: Accuracy,
     /// What was done.
@@ -105,7 +112,11 @@ pub fn look(plan: &Plan, cell: &CellShape, options: &ViewOptions) -> PlanView {
             let windows = swept.source.windows().to_vec();
             let grazing = std::mem::take(&mut swept.source.grazing);
             let middle = |f: &Funnel| PlanLine::avoiding(&f.lines, &grazing[f.window as usize]);
-            finish(plan, cell, windows, (funnels, middle), swept, options)
+            let trees = (options.proof && options.reach.is_none())
+                .then(|| certificate::trees(&swept.source, &swept.trees));
+            let mut view = finish(plan, cell, windows, (funnels, middle), swept, options);
+            view.proof = trees.map(|trees| certificate::proof(&view, trees));
+            view
         }
     }
 }
@@ -210,6 +221,7 @@ fn finish<S: Source>(
         touching,
         fragments,
         funnels,
+        proof: None,
         accuracy: if inside {
             Accuracy::Conservative
         } else {

@@ -86,6 +86,11 @@ impl RegionLines {
         &self.windows
     }
 
+    /// The point of a hyperplane.
+    pub(super) fn point_of(&self, plane: Plane3) -> [i128; 3] {
+        self.space.point_of(plane)
+    }
+
     /// The tree of a window.
     #[must_use]
     pub(super) fn tree_of(&self, window: usize) -> usize {

@@ -21,6 +21,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod check;
 mod mutual;
 mod seen;
 
@@ -28,11 +29,12 @@ pub use antumbra_scene::plan::{
     CellShape, Owner, PieceId, Plan, PlanCell, PlanCellError, PlanError, PlanInput, PlanKd,
     PlanNode, PlanOptions, PlanReport, PlanSegment, SegmentId,
 };
-pub use antumbra_sweep::Accuracy;
 pub use antumbra_sweep::occlusion::{BoxTest, SweepOrder};
 pub use antumbra_sweep::plan::{
     Fragment, Funnel, Growth, PlanLine, PlanView, PlanWork, Ratio, Sight,
     ViewOptions as SeeOptions, Window, look,
 };
+pub use antumbra_sweep::{Accuracy, PlanCheck, PlanProof};
+pub use check::check;
 pub use mutual::{mutual, mutual_matrix};
 pub use seen::{Seen, SeenSegment, see, see_all};

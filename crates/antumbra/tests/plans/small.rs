@@ -1,8 +1,8 @@
 //! Tiny scenes on a tiny lattice, where everything touches, crosses, overlaps and lines up.
 
 use antumbra::plan::{
-    BoxTest, CellShape, Plan, PlanCell, PlanInput, PlanOptions, PlanSegment, PlanView, SeeOptions,
-    SweepOrder, look,
+    BoxTest, CellShape, Plan, PlanCell, PlanInput, PlanOptions, PlanProof, PlanSegment, PlanView,
+    SeeOptions, SweepOrder, check, look,
 };
 use antumbra_testkit::environment::long;
 use antumbra_testkit::flat::{FlatScene, GridPoint};
@@ -142,6 +142,49 @@ fn combine(
     hits
 }
 
+/// The certificate holds, and altered ones do not.
+fn certificate(plan: &Plan, shape: &CellShape, random: &mut Random) {
+    let options = SeeOptions {
+        proof: true,
+        one_tree: random.index(2) == 0,
+        ..SeeOptions::default()
+    };
+    let Some(proof) = look(plan, shape, &options).proof else {
+        assert!(matches!(shape, CellShape::Point(_)));
+        return;
+    };
+    let report = check(plan, &proof);
+    assert!(
+        report.failed.is_empty(),
+        "{:?}\n{:?}\n{proof:?}",
+        report.failed,
+        plan.pieces()
+    );
+    assert_eq!(report.visible_checked as usize, proof.fragments.len());
+    if proof.fragments.is_empty() {
+        return;
+    }
+    let refuse = |altered: &PlanProof, what: &str| {
+        let report = check(plan, altered);
+        assert!(
+            !report.failed.is_empty(),
+            "{what} went unnoticed: {altered:?}"
+        );
+    };
+    let i = random.index(proof.fragments.len());
+    let mut altered = proof.clone();
+    let gone = altered.fragments.remove(i);
+    if !proof.touching.contains(&gone.piece) {
+        refuse(&altered, "a missing fragment");
+    }
+    let mut altered = proof.clone();
+    altered.fragments[i].line = proof.fragments[i].line.clone().map(|c| -c);
+    refuse(&altered, "a line turned round");
+    let mut altered = proof.clone();
+    altered.windows.remove(proof.fragments[i].window as usize);
+    refuse(&altered, "a missing window");
+}
+
 #[test]
 fn tiny_scenes_agree_with_the_oracle_and_with_themselves() {
     let mut random = Random::new(11);
@@ -162,6 +205,7 @@ fn tiny_scenes_agree_with_the_oracle_and_with_themselves() {
         for shape in &cell.parts {
             let view = look(&plan, shape, &SeeOptions::default());
             confirm(&oracle, &view);
+            certificate(&plan, shape, &mut random);
             hits += shoot(&plan, &oracle, &view, 60, &mut random);
             if !matches!(shape, CellShape::Point(_)) {
                 hits += combine(&plan, &oracle, &view, &mut random, 150);

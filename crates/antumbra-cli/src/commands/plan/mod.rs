@@ -79,6 +79,9 @@ pub(crate) struct PlanArgs {
     /// One occlusion tree for all edges of a cell; no result depends on it
     #[arg(long)]
     one_tree: bool,
+    /// Check every verdict by code that shares nothing with the engine
+    #[arg(long, conflicts_with_all = ["matrix", "reach", "to"])]
+    check: bool,
     /// Draw the plan, the cell, the visible fragments, extremal lines and culled kD nodes as SVG
     #[arg(long, value_name = "FILE", conflicts_with = "matrix")]
     svg: Option<PathBuf>,
@@ -173,6 +176,7 @@ impl PlanArgs {
             one_tree: self.one_tree,
             reach: self.reach.map(|r| (r / step).ceil() as u64),
             funnels: self.svg.is_some() || self.line_space.is_some() || self.output.is_some(),
+            proof: self.check,
             growth: false,
         }
     }
@@ -238,6 +242,9 @@ pub(crate) fn run(args: &PlanArgs, global: &Global) -> Result<(), Failure> {
         let start = Instant::now();
         write(args, &plan, &input, &outlines, &seen)?;
         result.insert("write_seconds".to_owned(), json!(seconds(start.elapsed())));
+        if args.check {
+            report::check(&plan, &seen, &mut result)?;
+        }
         report::seen(args, &plan, &outlines, &seen, &mut result)
     };
     let mut add = |key: &str, value: Value| {

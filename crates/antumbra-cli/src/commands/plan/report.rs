@@ -1,5 +1,7 @@
 //! What `plan` says: JSON for scripts, GeoJSON for maps, a sentence for people.
 
+use std::time::Instant;
+
 use antumbra::plan::{
     Accuracy, Fragment, Funnel, Plan, PlanInput, PlanLine, PlanView, Seen, Sight,
 };
@@ -7,6 +9,8 @@ use serde_json::{Map, Value, json};
 
 use super::PlanArgs;
 use super::cells::NamedCell;
+use crate::failure::Failure;
+use crate::output::seconds;
 
 fn accuracy(a: Accuracy) -> &'static str {
     match a {
@@ -117,6 +121,38 @@ pub(super) fn seen(
 /// Numbers stay numbers.
 fn id_value(id: &str) -> Value {
     id.parse::<i64>().map_or_else(|_| json!(id), |n| json!(n))
+}
+
+/// Checks all certificates; one that fails is a bug worth an exit code.
+pub(super) fn check(
+    plan: &Plan,
+    seen: &[Seen],
+    result: &mut Map<String, Value>,
+) -> Result<(), Failure> {
+    let start = Instant::now();
+    let proofs: Vec<_> = seen
+        .iter()
+        .flat_map(|s| &s.parts)
+        .filter_map(|v| v.proof.as_ref())
+        .collect();
+    let (mut visible, mut hidden) = (0, 0);
+    for proof in &proofs {
+        let report = antumbra::plan::check(plan, proof);
+        if let Some(why) = report.failed.first() {
+            return Err(Failure::Content(format!(
+                "the certificate does not hold: {why}; please report this with the plan and the cell"
+            )));
+        }
+        visible += report.visible_checked;
+        hidden += report.hidden_checked;
+    }
+    let parts: usize = seen.iter().map(|s| s.parts.len()).sum();
+    result.insert(
+        "check".to_owned(),
+        json!({"visible_checked": visible, "hidden_checked": hidden, "unchecked_points": parts - proofs.len(),
+            "seconds": seconds(start.elapsed())}),
+    );
+    Ok(())
 }
 
 pub(super) fn sight(plan: &Plan, sight: Option<Sight>, result: &mut Map<String, Value>) -> String {
