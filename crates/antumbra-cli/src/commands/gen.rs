@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use antumbra_io::plan::{write_geojson, write_seg};
 use antumbra_io::{GlbOptions, Instancing, write_glb, write_obj};
 use antumbra_scene::SceneInput;
 use antumbra_scene::synth::{
-    LayerParams, LayerPattern, MazeParams, OfficeKind, TriangleParams, face_count, floor, layers,
-    maze, office, random_triangles,
+    LayerParams, LayerPattern, MazeParams, OfficeKind, SegmentParams, TriangleParams, face_count,
+    floor, layers, maze, office, random_segments, random_triangles,
 };
 use clap::{Args, Subcommand, ValueEnum};
 use serde_json::{Value, json};
@@ -22,7 +23,7 @@ use crate::values::positive;
 pub(crate) struct GenArgs {
     #[command(subcommand)]
     kind: Kind,
-    /// The file to write: .glb or .obj
+    /// The file to write: .glb or .obj; plans: .seg or .geojson
     #[arg(long, short, global = true, value_name = "FILE")]
     output: Option<PathBuf>,
 }
@@ -48,6 +49,15 @@ enum Kind {
         /// Area of the source in square metres
         #[arg(long, value_name = "S", default_value_t = 2.0, value_parser = positive)]
         source_area: f64,
+    },
+    /// Random segments in a square of 100 m: a plan, written as .seg or .geojson
+    RandomSegments {
+        /// How many
+        #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=2_000_000))]
+        count: u32,
+        /// The longest one in metres (default: 40 / sqrt(N))
+        #[arg(long, value_name = "L", value_parser = positive)]
+        length: Option<f64>,
     },
     /// Walls of 20 x 20 quads, one behind the other
     Walls(Layers),
@@ -104,6 +114,11 @@ pub(crate) fn run(args: &GenArgs, global: &Global) -> Result<(), Failure> {
     let path = args.output.as_deref().ok_or_else(|| {
         Failure::Usage("the file to write is missing; give it with -o FILE.glb".to_owned())
     })?;
+    if let Kind::RandomSegments { count, length } = args.kind {
+        let mut params = SegmentParams::new(count, global.seed);
+        params.length = length.unwrap_or(params.length);
+        return plan(path, &params, global);
+    }
     let format = format_of(path)?;
     check_writable(path, &[])?;
     let (scene, mut parameters) = make(&args.kind, global.seed)?;
@@ -135,6 +150,30 @@ pub(crate) fn run(args: &GenArgs, global: &Global) -> Result<(), Failure> {
         scene.source_name
     );
     global.output().result(&parameters, &text)
+}
+
+/// Makes a plan and writes it.
+fn plan(path: &Path, params: &SegmentParams, global: &Global) -> Result<(), Failure> {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    let made = random_segments(params);
+    let mut used = json!({"kind": "random-segments", "count": params.count, "length": params.length,
+        "seed": global.seed});
+    let bytes = match extension.as_deref() {
+        Some("seg") => write_seg(&made, &used.to_string()),
+        Some("geojson" | "json") => write_geojson(&made, &used),
+        _ => {
+            return Err(Failure::Usage(format!(
+                "{}: plans are written as .seg or .geojson; change the file's extension",
+                path.display()
+            )));
+        }
+    };
+    check_writable(path, &[])?;
+    write_file(path, bytes.as_bytes())?;
+    used["segments"] = made.segments.len().into();
+    used["bytes"] = bytes.len().into();
+    let text = format!("{}: {} segments", path.display(), made.segments.len());
+    global.output().result(&used, &text)
 }
 
 enum Format {
@@ -175,6 +214,9 @@ fn make(kind: &Kind, seed: u64) -> Result<(SceneInput, Value), Failure> {
             let used = json!({"kind": "random-triangles", "count": count, "area": area,
                 "source_area": source_area, "seed": seed});
             (random_triangles(&params), used)
+        }
+        Kind::RandomSegments { .. } => {
+            return Err(Failure::Usage("plans are no scenes".to_owned()));
         }
         Kind::Walls(params) => layered("walls", LayerPattern::Walls, params),
         Kind::Chessboard(params) => layered("chessboard", LayerPattern::Chessboard, params),

@@ -6,6 +6,7 @@
 mod geojson;
 mod project;
 mod text;
+mod write;
 
 use std::fs;
 use std::path::Path;
@@ -17,6 +18,7 @@ use crate::read::gunzip;
 
 pub use geojson::{CellInput, parse_cells};
 pub use project::Crs;
+pub use write::{write_geojson, write_seg};
 
 /// What a plan file does not say by itself.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -8,6 +8,7 @@
 //! | generator | rebuilds |
 //! |---|---|
 //! | [`random_triangles`] | \[Bittner02, 8.14.1\] tests R1 to R9 |
+//! | [`random_segments`] | \[Bittner02, 6.7\] plans of 1,000 to 20,000 random segments |
 //! | [`layers`] | \[Bittner02, 8.14.2\] tests S1 to S6: walls and chessboards |
 //! | [`office`] | \[Chry96\]: offices of 139 to 751 polygons with a light |
 //! | [`floor`] | \[TS92\]: a furnished office floor; also the scene of `antumbra demo` |
@@ -22,6 +23,7 @@ mod layers;
 mod maze;
 mod office;
 mod rng;
+mod segments;
 mod shape;
 mod triangles;
 mod wall;
@@ -31,6 +33,7 @@ pub use layers::{LayerParams, LayerPattern, layers};
 pub use maze::{MazeParams, maze};
 pub use office::{OfficeKind, office};
 pub use rng::SplitMix64;
+pub use segments::{SegmentParams, random_segments};
 pub use triangles::{TriangleParams, random_triangles};
 
 /// The name of the object that acts as the source in the scenes of the thesis.
