@@ -3,8 +3,11 @@
 //! Readers hand over segments in scene units, y up, in the order of the file; nothing is snapped,
 //! merged or left out, so that ids are what a reader of the file would count.
 
+mod curve;
+mod dxf;
 mod geojson;
 mod project;
+mod svg;
 mod text;
 mod write;
 
@@ -82,7 +85,8 @@ pub fn parse_plan(
         let plan = match recognize(text, file) {
             PlanFormat::GeoJson => geojson::read(text, options)?,
             PlanFormat::Text => text::read(text)?,
-            PlanFormat::Svg | PlanFormat::Dxf => todo_format()?,
+            PlanFormat::Svg => svg::read(text)?,
+            PlanFormat::Dxf => dxf::read(text)?,
         };
         if plan.segments.is_empty() {
             return Err(Damage::new(
@@ -97,14 +101,6 @@ pub fn parse_plan(
         file: file.to_owned(),
         damage,
     })
-}
-
-fn todo_format() -> Result<PlanInput, Damage> {
-    Err(Damage::new(
-        Place::Whole,
-        "this format is not read yet",
-        "convert it",
-    ))
 }
 
 /// The content decides; among formats without a mark, text is what remains.

@@ -58,6 +58,6 @@ pub(super) fn read(text: &str) -> Result<PlanInput, Damage> {
 }
 
 /// At most twenty characters of a word, for messages.
-fn shortened(word: &str) -> String {
+pub(super) fn shortened(word: &str) -> String {
     word.chars().filter(|c| !c.is_control()).take(20).collect()
 }
