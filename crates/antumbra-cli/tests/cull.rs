@@ -2,6 +2,10 @@
 
 mod tool;
 
+use std::fmt::Write;
+
+use antumbra_testkit::environment::{data, long, skip};
+use antumbra_testkit::random::Random;
 use serde_json::Value;
 use tool::Folder;
 
@@ -120,6 +124,9 @@ fn damaged_paths_are_refused_by_line() {
     }
     folder.write("bad.path", b"\xff\xfe\x00");
     folder.run("cull maze.glb --path bad.path").failure(3);
+    folder
+        .run("cull maze.glb --path walk.path --verify --size 100x100")
+        .failure(2);
     folder.run("cull maze.glb --path gone.path").failure(4);
     folder.run("cull gone.glb --path walk.path").failure(4);
     folder
@@ -137,4 +144,60 @@ fn damaged_paths_are_refused_by_line() {
             .iter()
             .any(|n| n == "out.csv" || n == "t.svg")
     );
+}
+
+/// 100,000 random views of real scenes, inside, in walls and outside, against item buffers of 320 x 180
+/// pixels; a few hundred of them in the short run.
+#[test]
+fn random_views_of_measured_scenes_cull_nothing_that_has_a_pixel() {
+    let count = if long() { 25_000 } else { 50 };
+    for (seed, name) in ["duplex", "kit_institute", "quake_e1m1", "delft_block"]
+        .iter()
+        .enumerate()
+    {
+        let Some(walk) = data().map(|d| d.join("walk")).filter(|d| d.is_dir()) else {
+            skip("no measured walks");
+            return;
+        };
+        // Around the eyes of the walk, which are in rooms and streets.
+        let path = std::fs::read_to_string(walk.join(format!("{name}.path"))).expect("a path");
+        let eyes: Vec<[f64; 3]> = path
+            .lines()
+            .filter(|l| !l.starts_with('#'))
+            .map(|l| {
+                let mut words = l.split_whitespace().map(|w| w.parse().expect("a number"));
+                [(); 3].map(|()| words.next().expect("an eye"))
+            })
+            .collect();
+        let mut random = Random::new(seed as u64 + 1);
+        let mut views = String::new();
+        for _ in 0..count {
+            let eye = eyes[random.index(eyes.len())];
+            let reach = [0.5, 3.0, 30.0][random.index(3)];
+            let mut around = |size: f64| size * (2.0 * random.unit() - 1.0);
+            let (x, y, z) = (
+                eye[0] + around(reach),
+                eye[1] + around(reach),
+                eye[2] + around(reach / 3.0),
+            );
+            let (dx, dy, dz) = (around(1.0), around(1.0), around(0.5));
+            let angle = 60.0 + around(40.0);
+            writeln!(views, "{x} {y} {z} {dx} {dy} {dz} 0.01 0.02 1 {angle}").expect("a string");
+        }
+        let folder = Folder::new();
+        folder.write("views.path", views);
+        let scene = walk.join(format!("{name}.glb"));
+        for preset in ["fast", "tight"] {
+            let line = format!(
+                "cull {} --path views.path --verify --size 320x180 --preset {preset} --json --quiet",
+                scene.display()
+            );
+            let result = folder.run(&line).json();
+            assert_eq!(
+                result["verify"]["wrong_culls"],
+                serde_json::json!([]),
+                "{name}, {preset}"
+            );
+        }
+    }
 }

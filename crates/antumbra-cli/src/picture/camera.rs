@@ -13,10 +13,15 @@ pub(super) struct Camera {
     scale: f64,
     center: [f64; 2],
     parallel: bool,
+    /// How near a point may come.
+    near: f64,
 }
 
 /// How near a point may come to a perspective camera, as a share of the distance to its target.
 const NEAR: f64 = 1e-3;
+/// The same in scene units for a given eye, which may be close to a wall: nearer ones are not drawn,
+/// since their images are too large for doubles.
+const NEAREST: f64 = 1e-6;
 
 impl Camera {
     /// Looks straight down, with y up, one pixel for `1 / scale` units, a point at a place.
@@ -27,6 +32,7 @@ impl Camera {
             scale,
             center: [x, y],
             parallel: true,
+            near: NEAR,
         }
     }
 
@@ -46,6 +52,7 @@ impl Camera {
             scale,
             center,
             parallel: false,
+            near: NEAREST,
         }
     }
 
@@ -95,6 +102,7 @@ impl Camera {
             scale,
             center: [size[0] / 2.0, size[1] / 2.0],
             parallel: false,
+            near: NEAR,
         }
     }
 
@@ -112,7 +120,7 @@ impl Camera {
         if self.parallel {
             1.0
         } else {
-            dot(sub(p, self.eye), self.axes[2]) - NEAR
+            dot(sub(p, self.eye), self.axes[2]) - self.near
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::camera::Camera;
 use super::raster::scan;
-use super::vector::V3;
+use super::vector::{V3, area_vector, dot, sub};
 
 /// Surfaces whose nearness differs by less than this share coincide; far more than rounding, far less
 /// than any gap of a model.
@@ -12,6 +12,10 @@ const SAME: f64 = 1e-9;
 pub(crate) struct PixelOwners {
     size: [usize; 2],
     camera: Camera,
+    eye: V3,
+    axes: [V3; 3],
+    /// Half width and half height at distance one.
+    half: [f64; 2],
     keys: Vec<f64>,
 }
 
@@ -22,27 +26,48 @@ impl PixelOwners {
         Self {
             size,
             camera: Camera::at(eye, axes, h / 2.0 / half[1], [w / 2.0, h / 2.0]),
+            eye,
+            axes,
+            half,
             keys: vec![f64::NEG_INFINITY; size[0] * size[1]],
         }
     }
 
     /// Draws a convex polygon that hides what is behind it.
     pub(crate) fn draw(&mut self, corners: &[V3]) {
-        let keys = &mut self.keys;
-        scan(self.size, &self.camera, corners, |i, key| {
-            keys[i] = keys[i].max(key);
+        let key = self.nearness(corners);
+        let (width, keys) = (self.size[0], &mut self.keys);
+        scan(self.size, &self.camera, corners, |i, _| {
+            keys[i] = keys[i].max(key(i % width, i / width));
         });
     }
 
     /// Calls `owner` with column and row of each pixel that shows a polygon.
     pub(crate) fn credit(&self, corners: &[V3], mut owner: impl FnMut([u32; 2])) {
+        let key = self.nearness(corners);
         let width = self.size[0];
-        scan(self.size, &self.camera, corners, |i, key| {
+        scan(self.size, &self.camera, corners, |i, _| {
             let nearest = self.keys[i];
+            let key = key(i % width, i / width);
             if key >= nearest - SAME * nearest.abs() || nearest == f64::NEG_INFINITY {
                 owner([(i % width) as u32, (i / width) as u32]);
             }
         });
+    }
+
+    /// How near a polygon is in each pixel: from its plane, not from its projected corners, which may
+    /// be so far outside the picture that their digits do not suffice.
+    fn nearness(&self, corners: &[V3]) -> impl Fn(usize, usize) -> f64 + use<> {
+        let normal = area_vector(corners);
+        let distance = dot(normal, sub(corners[0], self.eye));
+        let [right, up, forward] = self.axes.map(|axis| dot(normal, axis) / distance);
+        let [w, h] = self.size.map(|n| n as f64);
+        let [x, y] = [self.half[0] * right, self.half[1] * up];
+        move |column, row| {
+            let s = (2.0 * column as f64 + 1.0) / w - 1.0;
+            let t = 1.0 - (2.0 * row as f64 + 1.0) / h;
+            forward + s * x + t * y
+        }
     }
 }
 

@@ -103,6 +103,12 @@ pub(crate) fn run(args: &CullArgs, global: &Global) -> Result<(), Failure> {
     {
         check_writable(path, &inputs)?;
     }
+    let [w, h] = args.size.map(|n| n as f64);
+    if args.verify && (w - h * args.aspect).abs() > 1e-6 * w {
+        return Err(Failure::Usage(format!(
+            "--size {w}x{h} has not the aspect of the view; give both, as --size 1920x1080 --aspect 16:9"
+        )));
+    }
     let cameras = frames::read(&args.path, args.aspect)?;
     if args.top.is_some() && args.frame >= cameras.len() {
         return Err(Failure::Usage(format!(
