@@ -65,12 +65,42 @@ pub enum Slot {
     Side(u32, Half),
 }
 
+/// How far away something is from the source of the lines: nowhere nearer than, nowhere farther than. In any unit
+/// that grows along the lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Range {
+    /// A lower bound.
+    pub near: u32,
+    /// An upper bound.
+    pub far: u32,
+}
+
+impl Range {
+    /// Nothing is known.
+    pub const ANY: Self = Self {
+        near: 0,
+        far: u32::MAX,
+    };
+}
+
 /// An occlusion tree over the lines of some space.
 #[derive(Clone, Debug)]
 pub struct OcclusionTree<P> {
     nodes: Vec<TreeNode<P>>,
     root: Child,
+    /// For each node its parent, and the maximal visibility distance below it [Bittner02, 6.5.5].
+    depths: Vec<Depth>,
+    /// The upper bound of each occluder's range.
+    fars: Vec<u32>,
 }
+
+#[derive(Clone, Copy, Debug)]
+struct Depth {
+    parent: u32,
+    reach: u32,
+}
+
+const NO_PARENT: u32 = u32::MAX;
 
 impl<P: Copy + Eq> Default for OcclusionTree<P> {
     fn default() -> Self {
@@ -85,6 +115,8 @@ impl<P: Copy + Eq> OcclusionTree<P> {
         Self {
             nodes: Vec::new(),
             root: Child::Leaf(Leaf::Open),
+            depths: Vec::new(),
+            fars: Vec::new(),
         }
     }
 
@@ -163,6 +195,13 @@ impl<P: Copy + Eq> OcclusionTree<P> {
     fn put_node(&mut self, slot: Slot, plane: P, children: [Child; 2]) -> u32 {
         let node = self.nodes.len() as u32;
         self.nodes.push(TreeNode { plane, children });
+        self.depths.push(Depth {
+            parent: match slot {
+                Slot::Root => NO_PARENT,
+                Slot::Side(parent, _) => parent,
+            },
+            reach: u32::MAX,
+        });
         self.put(slot, Child::Node(node));
         node
     }
@@ -175,11 +214,35 @@ impl<P: Copy + Eq> OcclusionTree<P> {
     where
         S: DepthSpace<Plane = P>,
     {
+        self.insert_at(space, piece, occluder, Range::ANY)
+    }
+
+    /// As [`OcclusionTree::insert`], for an occluder of known range: parts of the tree that see nothing as far away
+    /// are not entered.
+    pub fn insert_at<S>(
+        &mut self,
+        space: &mut S,
+        piece: S::Piece,
+        occluder: Occluder,
+        range: Range,
+    ) -> bool
+    where
+        S: DepthSpace<Plane = P>,
+    {
+        let index = occluder.0 as usize;
+        if self.fars.len() <= index {
+            self.fars.resize(index + 1, u32::MAX);
+        }
+        self.fars[index] = range.far;
         let mut seen = false;
         let mut stack = vec![(Slot::Root, piece)];
         while let Some((slot, piece)) = stack.pop() {
             match self.child(slot) {
                 Child::Node(node) => {
+                    if self.depths[node as usize].reach < range.near {
+                        space.discard(piece);
+                        continue;
+                    }
                     let plane = self.nodes[node as usize].plane;
                     match space.cut(piece, plane, Wall(node)) {
                         Cut::Whole(half, piece) => stack.push((Slot::Side(node, half), piece)),
@@ -222,6 +285,37 @@ impl<P: Copy + Eq> OcclusionTree<P> {
         }
         self.put(slot, Child::Leaf(Leaf::Blocked(occluder)));
         space.discard(piece);
+        self.settle(slot);
+    }
+
+    /// Brings the visibility distances above a slot up to date.
+    fn settle(&mut self, slot: Slot) {
+        let Slot::Side(mut node, _) = slot else {
+            return;
+        };
+        loop {
+            let children = self.nodes[node as usize].children;
+            let reach = self.reach(children[0]).max(self.reach(children[1]));
+            let depth = &mut self.depths[node as usize];
+            if depth.reach == reach {
+                return;
+            }
+            depth.reach = reach;
+            if depth.parent == NO_PARENT {
+                return;
+            }
+            node = depth.parent;
+        }
+    }
+
+    /// How far one sees through a child at most.
+    fn reach(&self, child: Child) -> u32 {
+        match child {
+            Child::Node(node) => self.depths[node as usize].reach,
+            Child::Leaf(Leaf::Open) => u32::MAX,
+            Child::Leaf(Leaf::Outside) => 0,
+            Child::Leaf(Leaf::Blocked(occluder)) => self.fars[occluder.0 as usize],
+        }
     }
 
     /// Whether an occluder would be seen, were it inserted. Exact; stops as soon as the answer is
@@ -230,7 +324,21 @@ impl<P: Copy + Eq> OcclusionTree<P> {
     where
         S: DepthSpace<Plane = P>,
     {
-        self.test_region(space, piece, |space, piece, old| {
+        self.test_at(space, piece, occluder, 0)
+    }
+
+    /// As [`OcclusionTree::test`], for an occluder that is nowhere nearer than `near`.
+    pub fn test_at<S>(
+        &self,
+        space: &mut S,
+        piece: S::Piece,
+        occluder: Occluder,
+        near: u32,
+    ) -> Visibility
+    where
+        S: DepthSpace<Plane = P>,
+    {
+        self.test_region_at(space, piece, near, |space, piece, old| {
             match space.order(piece, occluder, old) {
                 Order::Behind => Visibility::Invisible,
                 Order::InFront => Visibility::Full,
@@ -246,6 +354,21 @@ impl<P: Copy + Eq> OcclusionTree<P> {
         &self,
         space: &mut S,
         piece: S::Piece,
+        judge: impl FnMut(&mut S, &S::Piece, Occluder) -> Visibility,
+    ) -> Visibility
+    where
+        S: LineSpace<Plane = P>,
+    {
+        self.test_region_at(space, piece, 0, judge)
+    }
+
+    /// As [`OcclusionTree::test_region`], for a region that is nowhere nearer than `near`: where nothing as far away
+    /// is seen, the region is not, and the tree is not entered.
+    pub fn test_region_at<S>(
+        &self,
+        space: &mut S,
+        piece: S::Piece,
+        near: u32,
         mut judge: impl FnMut(&mut S, &S::Piece, Occluder) -> Visibility,
     ) -> Visibility
     where
@@ -255,6 +378,9 @@ impl<P: Copy + Eq> OcclusionTree<P> {
         let mut stack = vec![(self.root, piece)];
         while let Some((child, piece)) = stack.pop() {
             let state = match child {
+                Child::Node(node) if self.depths[node as usize].reach < near => {
+                    Visibility::Invisible
+                }
                 Child::Node(node) => {
                     let TreeNode { plane, children } = self.nodes[node as usize];
                     match space.cut(piece, plane, Wall(node)) {
@@ -290,6 +416,20 @@ impl<P: Copy + Eq> OcclusionTree<P> {
         &self,
         space: &S,
         piece: &S::Piece,
+        hidden_behind: impl FnMut(Occluder) -> bool,
+    ) -> Visibility
+    where
+        S: LineSpace<Plane = P>,
+    {
+        self.test_without_splitting_at(space, piece, 0, hidden_behind)
+    }
+
+    /// As [`OcclusionTree::test_without_splitting`], for a region that is nowhere nearer than `near`.
+    pub fn test_without_splitting_at<S>(
+        &self,
+        space: &S,
+        piece: &S::Piece,
+        near: u32,
         mut hidden_behind: impl FnMut(Occluder) -> bool,
     ) -> Visibility
     where
@@ -298,6 +438,7 @@ impl<P: Copy + Eq> OcclusionTree<P> {
         let mut stack = vec![self.root];
         while let Some(child) = stack.pop() {
             match child {
+                Child::Node(node) if self.depths[node as usize].reach < near => {}
                 Child::Node(node) => {
                     let TreeNode { plane, children } = self.nodes[node as usize];
                     match space.position(piece, plane) {

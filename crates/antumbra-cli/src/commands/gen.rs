@@ -55,7 +55,7 @@ enum Kind {
         /// How many
         #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=2_000_000))]
         count: u32,
-        /// The longest one in metres (default: 40 / sqrt(N))
+        /// The longest one in metres (default: 130 / sqrt(N))
         #[arg(long, value_name = "L", value_parser = positive)]
         length: Option<f64>,
     },

@@ -8,8 +8,8 @@ use crate::plan::{PlanInput, PlanSegment};
 pub struct SegmentParams {
     /// How many segments.
     pub count: u32,
-    /// The longest one in metres; they are evenly distributed up to it. The paper leaves it open: 40 / sqrt(count)
-    /// makes a cell see about as much as there.
+    /// The longest one in metres; they are evenly distributed up to it. The paper leaves it open: 130 / sqrt(count)
+    /// makes cells see about as many of them as there.
     pub length: f64,
     /// The seed.
     pub seed: u64,
@@ -21,7 +21,7 @@ impl SegmentParams {
     pub fn new(count: u32, seed: u64) -> Self {
         Self {
             count,
-            length: 40.0 / f64::from(count.max(1)).sqrt(),
+            length: 130.0 / f64::from(count.max(1)).sqrt(),
             seed,
         }
     }

@@ -6,6 +6,7 @@
 
 mod answer;
 mod certificate;
+mod distance;
 mod line;
 mod point;
 mod ratio;

@@ -7,6 +7,7 @@ use antumbra_lines::{
 
 use dashu_int::IBig;
 
+use super::distance;
 use super::line::PlanLine;
 use super::sweep::{Blocker, Source};
 use crate::occlusion::BoxTest;
@@ -102,6 +103,7 @@ impl Source for PointLines {
             window: 0,
             piece,
             occluder,
+            range: distance::range([self.space.eye(); 2], [p, q]),
         });
     }
 
@@ -135,10 +137,15 @@ impl Source for PointLines {
             Leaf::Outside => false,
             Leaf::Blocked(old) => !behind(&self.space, old),
         };
+        let near = (0..4).map(|k| {
+            let side = [corners[k], corners[(k + 1) % 4]];
+            distance::range([self.space.eye(); 2], side).near
+        });
+        let near = near.min().unwrap_or(0);
         let state = if seen {
             Visibility::Partial
         } else if test == BoxTest::Exact {
-            trees[0].test_region(&mut self.space, wedge, |space, _, old| {
+            trees[0].test_region_at(&mut self.space, wedge, near, |space, _, old| {
                 if behind(space, old) {
                     Visibility::Invisible
                 } else {
@@ -146,7 +153,9 @@ impl Source for PointLines {
                 }
             })
         } else {
-            trees[0].test_without_splitting(&self.space, &wedge, |old| behind(&self.space, old))
+            trees[0].test_without_splitting_at(&self.space, &wedge, near, |old| {
+                behind(&self.space, old)
+            })
         };
         self.space.rewind(filled);
         state != Visibility::Invisible

@@ -13,6 +13,7 @@ use antumbra_lines::{
 };
 use antumbra_scene::plan::{CellShape, Plan};
 
+use super::distance;
 use super::line::PlanLine;
 use super::sweep::{Blocker, Source};
 use crate::occlusion::BoxTest;
@@ -232,6 +233,7 @@ impl RegionLines {
                 window,
                 piece,
                 occluder,
+                range: distance::range([w.a, w.b], [c, d]),
             });
         }
     }
@@ -252,7 +254,13 @@ impl RegionLines {
             return true;
         };
         let space = &self.space;
-        let state = tree.test_without_splitting(space, &cone, |old| behind(space, old, &corners));
+        let near = (0..4).map(|k| {
+            let side = [corners[k], corners[(k + 1) % 4]];
+            distance::range([w.a, w.b], side).near
+        });
+        let near = near.min().unwrap_or(0);
+        let hidden = |old| behind(space, old, &corners);
+        let state = tree.test_without_splitting_at(space, &cone, near, hidden);
         self.space.discard(cone);
         state != Visibility::Invisible
     }
@@ -367,7 +375,10 @@ impl RegionLines {
         }
         let mut seen = false;
         for Blocker {
-            piece, occluder, ..
+            piece,
+            occluder,
+            range,
+            ..
         } in sides
         {
             let segment = *self.space.segment(occluder);
@@ -377,7 +388,8 @@ impl RegionLines {
                 self.space.discard(piece);
                 continue;
             }
-            seen = tree.test(&mut self.space, piece, occluder) != Visibility::Invisible;
+            let state = tree.test_at(&mut self.space, piece, occluder, range.near);
+            seen = state != Visibility::Invisible;
         }
         seen
     }

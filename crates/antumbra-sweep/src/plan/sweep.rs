@@ -7,7 +7,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use antumbra_kernel::{Point2, Rect};
-use antumbra_lines::{DepthSpace, LineSpace, Occluder, OcclusionTree};
+use antumbra_lines::{DepthSpace, LineSpace, Occluder, OcclusionTree, Range};
 use antumbra_scene::plan::{PieceId, Plan};
 use rustc_hash::FxHashSet;
 
@@ -25,6 +25,8 @@ pub(super) struct Blocker<P> {
     pub piece: P,
     /// Its number in the line space.
     pub occluder: Occluder,
+    /// How far it is from where the lines leave, in grid steps.
+    pub range: Range,
 }
 
 pub(super) type PlaneOf<S> = <<S as Source>::Space as LineSpace>::Plane;
@@ -254,7 +256,12 @@ impl<S: Source> Sweeper<'_, S> {
         let mut seen = false;
         for blocker in blockers.drain(..) {
             let tree = &mut out.trees[blocker.tree];
-            seen |= tree.insert(out.source.space(), blocker.piece, blocker.occluder);
+            seen |= tree.insert_at(
+                out.source.space(),
+                blocker.piece,
+                blocker.occluder,
+                blocker.range,
+            );
         }
         self.scratch = blockers;
         if seen {
