@@ -6,9 +6,12 @@
 //! |---|---|---|
 //! | given ray | 36 bits | `i64` |
 //! | row of two given rays, narrow | 63 bits | `i64` |
+//! | row of a crossing in the plane, middle | 77 bits | `i128` |
 //! | row of a common line, wide | 161 bits | `I256` |
 //! | ray of two narrow rows | 127 bits | `i128` |
-//! | ray where a row is wide | 323 bits | `Int<6>` |
+//! | ray of a middle row and a narrow one below 2^49 | 127 bits | `i128` |
+//! | middle row . ray of 127 bits | 205 bits | `I256` |
+//! | other rays where a row is not narrow | 323 bits | `Int<6>` |
 //! | narrow row . ray of narrow rows | 191 bits | `Int<3>` |
 //! | wide row . given ray | 198 bits | `I256` |
 //! | any row . any ray | 485 bits | `I512` |
@@ -19,6 +22,8 @@ use antumbra_kernel::{I256, I512, Int, Sign};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Row {
     Narrow([i64; 3]),
+    /// Below 2^76.
+    Middle([i128; 3]),
     Wide([I256; 3]),
 }
 
@@ -69,6 +74,7 @@ impl Row {
     pub(super) fn wide(&self) -> [I256; 3] {
         match self {
             Self::Narrow(v) => v.map(Int::from_i64),
+            Self::Middle(v) => v.map(Int::from_i128),
             Self::Wide(v) => *v,
         }
     }
@@ -76,9 +82,35 @@ impl Row {
     pub(super) fn to_f64(self) -> [f64; 3] {
         match self {
             Self::Narrow(v) => v.map(|c| c as f64),
+            Self::Middle(v) => v.map(|c| c as f64),
             Self::Wide(v) => v.map(|c| c.to_f64_scaled(0)),
         }
     }
+
+    /// The row, as narrow as it is.
+    pub(super) fn of_wide(row: [I256; 3]) -> Self {
+        if row.iter().all(|c| c.bits() <= MIDDLE) {
+            Self::Middle(row.map(|c| {
+                let [low, high, ..] = *c.limbs();
+                (u128::from(low) | u128::from(high) << 64) as i128
+            }))
+        } else {
+            Self::Wide(row)
+        }
+    }
+}
+
+/// Bits of a middle row's magnitude.
+const MIDDLE: u32 = 76;
+
+/// The ray of two rows whose products stay below 2^126.
+fn small_meet(a: &[i128; 3], b: &[i128; 3]) -> ExactRay {
+    let m = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
+    ExactRay::Narrow([m(1, 2), m(2, 0), m(0, 1)])
+}
+
+fn below_49_bits(row: &[i64; 3]) -> bool {
+    row.iter().all(|c| c.unsigned_abs() < 1 << 49)
 }
 
 /// The ray `a x b`.
@@ -89,6 +121,15 @@ pub(super) fn meet(a: &Row, b: &Row) -> ExactRay {
             i128::from(a[i]) * i128::from(b[j]) - i128::from(a[j]) * i128::from(b[i])
         };
         return ExactRay::Narrow([m(1, 2), m(2, 0), m(0, 1)]);
+    }
+    match (a, b) {
+        (Row::Middle(a), Row::Narrow(b)) if below_49_bits(b) => {
+            return small_meet(a, &b.map(i128::from));
+        }
+        (Row::Narrow(a), Row::Middle(b)) if below_49_bits(a) => {
+            return small_meet(&a.map(i128::from), b);
+        }
+        _ => {}
     }
     let a = a.wide().map(|c| c.resize::<6>());
     let b = b.wide().map(|c| c.resize::<6>());
@@ -106,6 +147,10 @@ pub(super) fn sign(row: &Row, ray: &ExactRay) -> Sign {
         ),
         (Row::Narrow(r), ExactRay::Narrow(v)) => {
             let t = |k: usize| Int::<3>::from_i128(v[k]).times_i64(r[k]);
+            (t(0) + t(1) + t(2)).sign()
+        }
+        (Row::Middle(r), ExactRay::Narrow(v)) => {
+            let t = |k: usize| I256::product_i128(r[k], v[k]);
             (t(0) + t(1) + t(2)).sign()
         }
         (Row::Wide(r), ExactRay::Given(v)) => {
@@ -160,6 +205,15 @@ mod tests {
             let w = |k: u32, v: I256| if flip(k) { -v } else { v };
             out.push(Row::Narrow([n(0, narrow), n(1, narrow - 2), n(2, narrow)]));
             out.push(Row::Narrow([n(0, 1), n(1, narrow), n(2, 3)]));
+            let middle = (1_i128 << 76) - 1;
+            let m = |k: u32, v: i128| if flip(k) { -v } else { v };
+            out.push(Row::Middle([m(0, middle), m(1, middle - 5), m(2, middle)]));
+            let forty_nine = (1_i64 << 49) - 1;
+            out.push(Row::Narrow([
+                n(0, forty_nine),
+                n(1, 3 - forty_nine),
+                n(2, 7),
+            ]));
             let less = wide - I256::from_i64(7);
             out.push(Row::Wide([w(0, wide), w(1, less), w(2, wide)]));
         }

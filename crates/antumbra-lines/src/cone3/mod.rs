@@ -161,7 +161,7 @@ impl Space3 {
     /// A hyperplane by a wide row; coefficients are smaller than 2^160 in magnitude.
     pub fn wide_plane(&mut self, row: [I256; 3]) -> Plane3 {
         debug_assert!(row.iter().all(|c| c.bits() <= 160));
-        self.push(Row::Wide(row))
+        self.push(Row::of_wide(row))
     }
 
     fn push(&mut self, row: Row) -> Plane3 {
