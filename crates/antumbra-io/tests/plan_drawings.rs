@@ -28,10 +28,10 @@ fn an_svg_is_read_with_its_groups_and_transformations() {
 </svg>"##;
     let plan = parse(svg, "plan.svg").unwrap();
     let found = ends(&plan);
-    assert_eq!(found[0], [[10.0, -20.0], [12.0, -26.0]]);
-    assert_eq!(found[1], [[10.0, -20.0], [18.0, -20.0]]);
-    assert_eq!(found[3], [[18.0, -26.0], [10.0, -20.0]]);
-    assert_eq!(found[4], [[12.0, -20.0], [16.0, -20.0]]);
+    assert_eq!(found[0], [[10.0, 20.0], [12.0, 26.0]]);
+    assert_eq!(found[1], [[10.0, 20.0], [18.0, 20.0]]);
+    assert_eq!(found[3], [[18.0, 26.0], [10.0, 20.0]]);
+    assert_eq!(found[4], [[12.0, 20.0], [16.0, 20.0]]);
     assert_eq!(found.len(), 1 + 3 + 1 + 3 + 4);
     let class = |i: usize| plan.classes[plan.segments[i].class as usize].as_str();
     assert_eq!((class(0), class(5), class(8)), ("walls", "door", ""));

@@ -1,6 +1,6 @@
 //! Plans: segments of the plane from GeoJSON, SVG, DXF and plain text.
 //!
-//! Readers hand over segments in scene units, y up, in the order of the file; nothing is snapped,
+//! Readers hand over segments in scene units, with the y of the file, in its order; nothing is snapped,
 //! merged or left out, so that ids are what a reader of the file would count.
 
 mod curve;

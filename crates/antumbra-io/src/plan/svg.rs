@@ -1,5 +1,6 @@
 //! SVG drawings: every line, polyline, polygon, rectangle, circle, ellipse and path, with the
-//! transformations of its groups, in user units. y is turned up.
+//! transformations of its groups, in user units. y stays as it is and runs down, so that cells are given in the
+//! coordinates of the drawing.
 //!
 //! Coordinates stay doubles, which is why no renderer's tree (of single floats) is read.
 
@@ -56,8 +57,7 @@ pub(super) fn read(text: &str) -> Result<PlanInput, Damage> {
         skipped,
         ..
     } = reader;
-    plan.notes
-        .push("y was turned up: y = -y of the drawing".to_owned());
+    plan.y_down = true;
     if curves > 0 {
         plan.notes
             .push(format!("{curves} curved elements became chords"));
@@ -80,7 +80,7 @@ struct Context {
 impl Default for Context {
     fn default() -> Self {
         Self {
-            transform: Affine::FLIP_Y,
+            transform: Affine::IDENTITY,
             class: String::new(),
             nested: 0,
         }

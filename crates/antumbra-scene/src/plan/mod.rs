@@ -36,6 +36,8 @@ pub struct PlanInput {
     pub classes: Vec<String>,
     /// Names of features; empty where there is none.
     pub features: Vec<String>,
+    /// Whether y runs down in the file, as in SVG; only pictures care.
+    pub y_down: bool,
     /// The longitude and latitude around which it was projected to metres, if it was.
     pub projected_around: Option<[f64; 2]>,
     /// Notes of the reader for people: what was projected or left out.

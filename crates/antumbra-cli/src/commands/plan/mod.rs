@@ -296,7 +296,7 @@ fn write(
         write_file(path, text.as_bytes())?;
     }
     if let Some(path) = &args.svg {
-        write_file(path, picture::plan(plan, seen).as_bytes())?;
+        write_file(path, picture::plan(plan, seen, input.y_down).as_bytes())?;
     }
     if let Some(path) = &args.line_space {
         write_file(path, picture::line_space(plan, seen).as_bytes())?;

@@ -15,6 +15,7 @@ struct Paper {
     low: [f64; 2],
     high: [f64; 2],
     scale: f64,
+    y_down: bool,
 }
 
 impl Paper {
@@ -26,12 +27,18 @@ impl Paper {
             low,
             high,
             scale: WIDTH / (high[0] - low[0]),
+            y_down: false,
         }
     }
 
     fn at(&self, p: [f64; 2]) -> String {
         let x = (p[0] - self.low[0]) * self.scale;
-        let y = (self.high[1] - p[1]) * self.scale;
+        let y = if self.y_down {
+            p[1] - self.low[1]
+        } else {
+            self.high[1] - p[1]
+        };
+        let y = y * self.scale;
         format!("{x:.2} {y:.2}")
     }
 
@@ -57,7 +64,7 @@ fn outline(paper: &Paper, points: &[[f64; 2]]) -> String {
 }
 
 /// The plan with what is seen of it.
-pub(super) fn plan(plan: &Plan, seen: &[Seen]) -> String {
+pub(super) fn plan(plan: &Plan, seen: &[Seen], y_down: bool) -> String {
     let bounds = plan.bounds();
     let cells = || seen.iter().flat_map(|s| &s.parts);
     let mut low = [f64::INFINITY; 2];
@@ -68,7 +75,10 @@ pub(super) fn plan(plan: &Plan, seen: &[Seen]) -> String {
         low = [0, 1].map(|k| low[k].min(p[k]));
         high = [0, 1].map(|k| high[k].max(p[k]));
     }
-    let paper = Paper::new(low, high);
+    let paper = Paper {
+        y_down,
+        ..Paper::new(low, high)
+    };
     let mut svg = paper.open("What a cell sees of a plan");
     let (mut culled, mut lines, mut red, mut blue) =
         (String::new(), String::new(), String::new(), String::new());
