@@ -178,6 +178,13 @@ impl Plan {
         [x, y]
     }
 
+    /// Fractional grid coordinates of a scene point, for pictures.
+    #[must_use]
+    pub fn to_grid_f64(&self, p: [f64; 2]) -> [f64; 2] {
+        let [x, y, _] = self.grid.to_grid_f64([p[0], p[1], 0.0]);
+        [x, y]
+    }
+
     /// All pieces that meet a closed box, each once, sorted.
     #[must_use]
     pub fn pieces_in(&self, bounds: &Rect) -> Vec<PieceId> {

@@ -13,6 +13,7 @@ mod ratio;
 mod region;
 mod sight;
 mod sweep;
+mod tiles;
 
 use antumbra_lines::{LineSpace, OcclusionTree};
 use antumbra_scene::plan::{CellShape, PieceId, Plan};
@@ -30,6 +31,7 @@ pub use region::Window;
 pub use sight::{Sight, sights};
 pub use sweep::{Growth, PlanWork};
 use sweep::{How, Source, Swept, sweep};
+pub use tiles::{frame, tiles};
 
 /// How to look.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

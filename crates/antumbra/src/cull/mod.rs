@@ -1,6 +1,6 @@
 //! Real-time culling: which objects a camera may see, every frame, on the processor, never wrong.
 //!
-//! After [Bittner02, ch. 4] and [BHS98]: the kD-tree of the scene is swept from the eye; nodes, and the
+//! After [Bittner02, ch. 4] and [BHS98, 4 to 6]: the kD-tree of the scene is swept from the eye; nodes, and the
 //! boxes and polygons of objects, are tested against an occlusion tree of a few large occluders. Signs
 //! are floats with a proved bound, and whatever is doubtful counts as *visible*, so an object that is
 //! left out cannot be seen: it may be culled. See `docs/notes/cull.md`.

@@ -1,4 +1,4 @@
-//! What can be chosen, in the terms of [Bittner02, ch. 4] and [BHS98].
+//! What can be chosen, in the terms of [Bittner02, ch. 4] and [BHS98, 4 to 6].
 
 use antumbra_scene::ObjectId;
 

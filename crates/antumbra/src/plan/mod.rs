@@ -2,7 +2,7 @@
 //!
 //! A [`Plan`] is made of segments, a [`PlanCell`] is a polygon, a segment or a point. [`see`] says which
 //! segments the cell sees, which fragments of them, and through which lines; [`see_all`] does so for many
-//! cells at once; [`mutual`] asks whether two cells see each other.
+//! cells at once; [`isovist()`] is the area that is seen; [`mutual`] asks whether two cells see each other.
 //!
 //! ```
 //! use antumbra::plan::{Plan, PlanCell, PlanInput, PlanOptions, PlanSegment, SeeOptions, see};
@@ -22,6 +22,7 @@
 //! ```
 
 mod check;
+mod isovist;
 mod mutual;
 mod seen;
 
@@ -36,5 +37,6 @@ pub use antumbra_sweep::plan::{
 };
 pub use antumbra_sweep::{Accuracy, PlanCheck, PlanProof};
 pub use check::check;
+pub use isovist::{Isovist, isovist};
 pub use mutual::{mutual, mutual_matrix};
 pub use seen::{Seen, SeenSegment, see, see_all};

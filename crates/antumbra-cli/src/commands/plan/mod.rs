@@ -8,12 +8,13 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use antumbra::plan::{
-    BoxTest, Plan, PlanCell, PlanOptions, SeeOptions, Seen, SweepOrder, mutual, mutual_matrix,
-    see_all,
+    BoxTest, Isovist, Plan, PlanCell, PlanOptions, SeeOptions, Seen, SweepOrder, isovist, mutual,
+    mutual_matrix, see_all,
 };
 use antumbra_io::plan::{Crs, PlanReadOptions, read_plan};
 use antumbra_scene::OccluderPolicy;
 use clap::{Args, ValueEnum};
+use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 
 use crate::cli::Global;
@@ -79,6 +80,9 @@ pub(crate) struct PlanArgs {
     /// One occlusion tree for all edges of a cell; no result depends on it
     #[arg(long)]
     one_tree: bool,
+    /// The visible area of each cell: polygon, area, perimeter and depth; drawn with --svg
+    #[arg(long, conflicts_with_all = ["matrix", "to"])]
+    isovist: bool,
     /// Check every verdict by code that shares nothing with the engine
     #[arg(long, conflicts_with_all = ["matrix", "reach", "to"])]
     check: bool,
@@ -235,17 +239,22 @@ pub(crate) fn run(args: &PlanArgs, global: &Global) -> Result<(), Failure> {
         matrix(&plan, &outlines, &made, &mut result)
     } else if let Some(to) = &args.to {
         let to = NamedCell::given(to).make(&plan, None)?;
-        report::sight(&plan, mutual(&plan, &made[0], &to), &mut result)
+        report::sight(mutual(&plan, &made[0], &to), &mut result)
     } else {
         let seen = see_all(&plan, &made, &args.options(plan.grid().step()));
+        let areas: Vec<Isovist> = if args.isovist {
+            made.par_iter().map(|cell| isovist(&plan, cell)).collect()
+        } else {
+            Vec::new()
+        };
         result.insert("seconds".to_owned(), json!(seconds(start.elapsed())));
         let start = Instant::now();
-        write(args, &plan, &input, &outlines, &seen)?;
+        write(args, &plan, &input, &outlines, (&seen, &areas))?;
         result.insert("write_seconds".to_owned(), json!(seconds(start.elapsed())));
         if args.check {
             report::check(&plan, &seen, &mut result)?;
         }
-        report::seen(args, &plan, &outlines, &seen, &mut result)
+        report::seen(args, &plan, &outlines, (&seen, &areas), &mut result)
     };
     let mut add = |key: &str, value: Value| {
         result.entry(key).or_insert(value);
@@ -285,10 +294,10 @@ fn write(
     plan: &Plan,
     input: &antumbra::plan::PlanInput,
     outlines: &[NamedCell],
-    seen: &[Seen],
+    (seen, areas): (&[Seen], &[Isovist]),
 ) -> Result<(), Failure> {
     if let Some(path) = &args.geojson {
-        let text = report::geojson(plan, input, outlines, seen).to_string();
+        let text = report::geojson(input, outlines, seen, areas).to_string();
         write_file(path, text.as_bytes())?;
     }
     if let Some(path) = &args.output {
@@ -296,10 +305,13 @@ fn write(
         write_file(path, text.as_bytes())?;
     }
     if let Some(path) = &args.svg {
-        write_file(path, picture::plan(plan, seen, input.y_down).as_bytes())?;
+        write_file(
+            path,
+            picture::plan(plan, seen, areas, input.y_down).as_bytes(),
+        )?;
     }
     if let Some(path) = &args.line_space {
-        write_file(path, picture::line_space(plan, seen).as_bytes())?;
+        write_file(path, picture::line_space(seen).as_bytes())?;
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use antumbra::plan::{Plan, PlanView, Seen};
+use antumbra::plan::{Isovist, Plan, PlanView, Seen};
 
 use super::report::meet;
 
@@ -64,7 +64,7 @@ fn outline(paper: &Paper, points: &[[f64; 2]]) -> String {
 }
 
 /// The plan with what is seen of it.
-pub(super) fn plan(plan: &Plan, seen: &[Seen], y_down: bool) -> String {
+pub(super) fn plan(plan: &Plan, seen: &[Seen], areas: &[Isovist], y_down: bool) -> String {
     let bounds = plan.bounds();
     let cells = || seen.iter().flat_map(|s| &s.parts);
     let mut low = [f64::INFINITY; 2];
@@ -117,6 +117,13 @@ pub(super) fn plan(plan: &Plan, seen: &[Seen], y_down: bool) -> String {
         "fill=\"#e4e4e4\" stroke=\"#d2d2d2\" stroke-width=\"0.3\"",
         &culled,
     );
+    let mut seen_area = String::new();
+    for ring in areas.iter().flat_map(|a| &a.polygons).flatten() {
+        let steps: Vec<[f64; 2]> = ring.iter().map(|&p| plan.to_grid_f64(p)).collect();
+        seen_area += &outline(&paper, &steps);
+    }
+    let style = "fill=\"#fff2b8\" fill-rule=\"evenodd\" stroke=\"none\"";
+    layer(&mut svg, "isovist", style, &seen_area);
     layer(
         &mut svg,
         "extremal-lines",
@@ -158,11 +165,10 @@ fn extremal(paper: &Paper, plan: &Plan, view: &PlanView, out: &mut String) {
 
 /// The funnels as polygons of line space: each extremal line is the point (a, b, c) on a sphere around the
 /// middle of the cell, drawn by its direction and its distance from the middle.
-pub(super) fn line_space(plan: &Plan, seen: &[Seen]) -> String {
+pub(super) fn line_space(seen: &[Seen]) -> String {
     let paper = Paper::new([-180.0, -60.0], [180.0, 60.0]);
     let mut svg =
         paper.open("Funnels in line space: direction against distance from the middle of the cell");
-    let _ = plan;
     for view in seen.iter().flat_map(|s| &s.parts) {
         let bounds = view.cell.bounds();
         let (low, high) = (bounds.min.to_f64(), bounds.max.to_f64());

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use antumbra::plan::{
-    Accuracy, Fragment, Funnel, Plan, PlanInput, PlanLine, PlanView, Seen, Sight,
+    Accuracy, Fragment, Funnel, Isovist, Plan, PlanInput, PlanLine, PlanView, Seen, Sight,
 };
 use serde_json::{Map, Value, json};
 
@@ -21,7 +21,7 @@ fn accuracy(a: Accuracy) -> &'static str {
 }
 
 /// The keys of one cell.
-fn cell(args: &PlanArgs, plan: &Plan, seen: &Seen) -> Map<String, Value> {
+fn cell(args: &PlanArgs, plan: &Plan, seen: &Seen, area: Option<&Isovist>) -> Map<String, Value> {
     let visible: Vec<Value> = seen
         .segments
         .iter()
@@ -39,6 +39,11 @@ fn cell(args: &PlanArgs, plan: &Plan, seen: &Seen) -> Map<String, Value> {
     out.insert("tree_nodes".to_owned(), json!(seen.work.tree_nodes));
     out.insert("blockers".to_owned(), json!(seen.work.blockers));
     out.insert("kd_nodes_tested".to_owned(), json!(seen.work.nodes_tested));
+    if let Some(area) = area {
+        let isovist = json!({"area": area.area, "perimeter": area.perimeter, "depth": area.depth,
+            "open": area.open, "polygons": area.polygons});
+        out.insert("isovist".to_owned(), isovist);
+    }
     if args.witnesses {
         let lines = seen
             .parts
@@ -81,12 +86,12 @@ pub(super) fn seen(
     args: &PlanArgs,
     plan: &Plan,
     outlines: &[NamedCell],
-    seen: &[Seen],
+    (seen, areas): (&[Seen], &[Isovist]),
     result: &mut Map<String, Value>,
 ) -> String {
     if args.cells.is_none() {
         let one = &seen[0];
-        result.extend(cell(args, plan, one));
+        result.extend(cell(args, plan, one, areas.first()));
         let fragments: usize = one.segments.iter().map(|s| s.fragments.len()).sum();
         return format!(
             "{} of {} segments visible in {fragments} fragments ({}), {} tree nodes",
@@ -99,8 +104,9 @@ pub(super) fn seen(
     let cells: Vec<Value> = outlines
         .iter()
         .zip(seen)
-        .map(|(named, one)| {
-            let mut entry = cell(args, plan, one);
+        .enumerate()
+        .map(|(i, (named, one))| {
+            let mut entry = cell(args, plan, one, areas.get(i));
             entry.insert("id".to_owned(), id_value(&named.id));
             Value::Object(entry)
         })
@@ -155,8 +161,7 @@ pub(super) fn check(
     Ok(())
 }
 
-pub(super) fn sight(plan: &Plan, sight: Option<Sight>, result: &mut Map<String, Value>) -> String {
-    let _ = plan;
+pub(super) fn sight(sight: Option<Sight>, result: &mut Map<String, Value>) -> String {
     let (verdict, text) = match &sight {
         None => ("hidden", "the cells do not see each other"),
         Some(Sight::Touching) => ("visible", "the cells touch"),
@@ -172,10 +177,10 @@ pub(super) fn sight(plan: &Plan, sight: Option<Sight>, result: &mut Map<String, 
 
 /// The visible fragments as a feature each.
 pub(super) fn geojson(
-    plan: &Plan,
     input: &PlanInput,
     outlines: &[NamedCell],
     seen: &[Seen],
+    areas: &[Isovist],
 ) -> Value {
     let mut features = Vec::new();
     for (named, one) in outlines.iter().zip(seen) {
@@ -198,11 +203,23 @@ pub(super) fn geojson(
             }));
         }
     }
+    for (named, area) in outlines.iter().zip(areas) {
+        // Rings of GeoJSON repeat their first point.
+        let mut polygons = area.polygons.clone();
+        for ring in polygons.iter_mut().flatten() {
+            ring.extend(ring.first().copied());
+        }
+        features.push(json!({
+            "type": "Feature",
+            "properties": {"cell": id_value(&named.id), "isovist": true, "area": area.area,
+                "perimeter": area.perimeter, "depth": area.depth, "open": area.open},
+            "geometry": {"type": "MultiPolygon", "coordinates": polygons},
+        }));
+    }
     let mut out = json!({"type": "FeatureCollection", "features": features});
     if let Some(middle) = input.projected_around {
         out["projected_around"] = json!(middle);
     }
-    let _ = plan;
     out
 }
 
