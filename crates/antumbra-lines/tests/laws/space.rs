@@ -1,20 +1,38 @@
 //! The laws of cutting: written once, run for every space.
 
-use antumbra_lines::{Cut, Half, LineSpace, Position, Wall};
+use antumbra_kernel::{Point2, crossing2d, orient2d};
+use antumbra_lines::{Cut, Half, LineSpace, Pencil, PlaneLines, Position, Space3, Wall, facet};
 
-use crate::cones;
+use crate::{Random, cones};
+
+/// How many rays a piece has at least.
+trait Lawful: LineSpace {
+    const RAYS: usize;
+}
+
+impl Lawful for Space3 {
+    const RAYS: usize = 3;
+}
+
+impl Lawful for PlaneLines {
+    const RAYS: usize = 3;
+}
+
+impl Lawful for Pencil {
+    const RAYS: usize = 2;
+}
 
 /// Whether a ray lies in a closed piece.
-fn holds<S: LineSpace>(space: &S, piece: &S::Piece, ray: &S::Ray) -> bool {
+fn holds<S: Lawful>(space: &S, piece: &S::Piece, ray: &S::Ray) -> bool {
     space
         .facets(piece)
         .all(|f| space.sign(f.plane, ray) != f.side.opposite().sign())
 }
 
 /// A piece holds its rays, and has an inside: no facet holds all of them.
-fn is_piece<S: LineSpace>(space: &S, piece: &S::Piece) {
+fn is_piece<S: Lawful>(space: &S, piece: &S::Piece) {
     let rays: Vec<&S::Ray> = space.rays(piece).collect();
-    assert!(rays.len() >= 3, "{piece:?}");
+    assert!(rays.len() >= S::RAYS, "{piece:?}");
     assert!(rays.iter().all(|ray| holds(space, piece, ray)), "{piece:?}");
     for facet in space.facets(piece) {
         let inside = facet.side.sign();
@@ -23,7 +41,7 @@ fn is_piece<S: LineSpace>(space: &S, piece: &S::Piece) {
 }
 
 /// Cuts a piece and checks the laws of one cut; returns the parts, negative first.
-fn lawful_cut<S: LineSpace>(
+fn lawful_cut<S: Lawful>(
     space: &mut S,
     piece: &S::Piece,
     plane: S::Plane,
@@ -60,7 +78,7 @@ fn lawful_cut<S: LineSpace>(
 }
 
 /// The parts that two cuts leave, by the sides they lie on.
-fn both_cuts<S: LineSpace>(
+fn both_cuts<S: Lawful>(
     space: &mut S,
     piece: &S::Piece,
     [first, second]: [S::Plane; 2],
@@ -71,7 +89,7 @@ fn both_cuts<S: LineSpace>(
     })
 }
 
-fn laws<S: LineSpace>(space: &mut S, piece: &S::Piece, planes: &[S::Plane]) -> usize {
+fn laws<S: Lawful>(space: &mut S, piece: &S::Piece, planes: &[S::Plane]) -> usize {
     is_piece(space, piece);
     let mut parts = 0;
     for (i, &p) in planes.iter().enumerate() {
@@ -115,4 +133,67 @@ fn cones_of_large_numbers_keep_the_laws() {
         }
     }
     assert!(parts > 1_000, "{parts}");
+}
+
+fn point(random: &mut Random, reach: i64) -> Point2 {
+    let mut coordinate = || random.between(-reach, reach) as i32;
+    Point2::new(coordinate(), coordinate())
+}
+
+/// Lines of the plane: those through a segment that pass another one.
+#[test]
+fn lines_of_the_plane_keep_the_laws() {
+    let mut parts = 0;
+    for seed in 0..3000 {
+        let mut random = Random(seed * 2 + 88_172_645_463_325_252);
+        let reach = if seed % 2 == 0 { 4 } else { (1 << 23) - 1 };
+        let mut space = PlaneLines::new();
+        let (a, b, c) = (
+            point(&mut random, reach),
+            point(&mut random, reach),
+            point(&mut random, reach),
+        );
+        if orient2d(a, b, c) >= 0 {
+            continue;
+        }
+        let facets = [
+            facet(space.point(a), Half::Negative),
+            facet(space.point(b), Half::Positive),
+            facet(space.point(c), Half::Positive),
+        ];
+        let cone = space.cone_of(&facets);
+        let mut planes: Vec<_> = (0..3)
+            .map(|_| space.point(point(&mut random, reach)))
+            .collect();
+        let crossing = crossing2d(
+            [a, point(&mut random, reach)],
+            [c, point(&mut random, reach)],
+        );
+        if crossing[2] > 0 {
+            planes.push(space.crossing(crossing));
+        }
+        parts += laws(&mut space, &cone, &planes);
+    }
+    assert!(parts > 1000, "only {parts} parts");
+}
+
+/// Lines through a point of the plane.
+#[test]
+fn pencils_keep_the_laws() {
+    let mut parts = 0;
+    for seed in 0..3000 {
+        let mut random = Random(seed * 2 + 88_172_645_463_325_252);
+        let reach = if seed % 2 == 0 { 3 } else { (1 << 24) - 1 };
+        let mut space = Pencil::new(Point2::default());
+        let mut d = || [random.between(-reach, reach), random.between(-reach, reach)];
+        let (right, left) = (d(), d());
+        if right[0] * left[1] - right[1] * left[0] <= 0 {
+            continue;
+        }
+        let directions: Vec<[i64; 2]> = (0..4).map(|_| d()).filter(|v| *v != [0, 0]).collect();
+        let wedge = space.wedge(right, left);
+        let planes: Vec<_> = directions.into_iter().map(|v| space.direction(v)).collect();
+        parts += laws(&mut space, &wedge, &planes);
+    }
+    assert!(parts > 1000, "only {parts} parts");
 }
