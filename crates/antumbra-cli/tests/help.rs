@@ -4,7 +4,7 @@ mod tool;
 
 use tool::{Folder, assert_snapshot};
 
-const COMMANDS: [&str; 21] = [
+const COMMANDS: [&str; 23] = [
     "",
     "bake",
     "pvs",
@@ -19,7 +19,9 @@ const COMMANDS: [&str; 21] = [
     "map",
     "shadow",
     "cull",
+    "plan",
     "gen",
+    "gen random-segments",
     "gen random-triangles",
     "gen walls",
     "gen office",

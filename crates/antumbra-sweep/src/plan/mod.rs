@@ -42,7 +42,7 @@ pub struct ViewOptions {
     pub test: BoxTest,
     /// One tree for all edges of a cell, instead of one for each [Bittner02, 6.5.2].
     pub one_tree: bool,
-    /// Leave out what is farther away than this, in grid steps: what is nearer is exact.
+    /// Leave out what is farther from the box around the cell than this, in grid steps: what is nearer is exact.
     pub reach: Option<u64>,
     /// Keep the funnels.
     pub funnels: bool,

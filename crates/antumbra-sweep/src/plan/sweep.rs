@@ -216,11 +216,12 @@ impl<S: Source> Sweeper<'_, S> {
         if node.children().is_none() && node.count() == 0 {
             return false;
         }
-        if let Some(reach) = self.how.reach {
-            let near = node.bounds.distance_squared(&out.source.bounds());
-            if near as u64 > reach.saturating_mul(reach) {
-                return false;
-            }
+        if self
+            .how
+            .reach
+            .is_some_and(|r| is_beyond(r, &node.bounds, &out.source.bounds()))
+        {
+            return false;
         }
         if self.how.test == BoxTest::Never {
             return true;
@@ -240,7 +241,12 @@ impl<S: Source> Sweeper<'_, S> {
         self.out.opened.push(index);
         let plan = self.plan;
         for &id in plan.kd().items(&plan.kd().nodes()[index as usize]) {
-            if plan.occludes(id) && self.seen.insert(id) {
+            let ends = plan.pieces()[id.0 as usize];
+            let beyond = self.how.reach.is_some_and(|reach| {
+                let around = Rect::around(ends);
+                around.is_some_and(|r| is_beyond(reach, &r, &self.out.source.bounds()))
+            });
+            if !beyond && plan.occludes(id) && self.seen.insert(id) {
                 self.insert(id);
             }
         }
@@ -274,4 +280,9 @@ impl<S: Source> Sweeper<'_, S> {
             out.growth.push((out.work.blockers, nodes as u64));
         }
     }
+}
+
+/// Whether a box is farther from another one than a distance.
+fn is_beyond(reach: u64, rect: &Rect, from: &Rect) -> bool {
+    rect.distance_squared(from).unsigned_abs() > reach.saturating_mul(reach)
 }

@@ -9,6 +9,7 @@ mod buildings;
 mod culling;
 mod maps;
 mod pairs;
+mod plans;
 mod synthetic;
 
 use criterion::{criterion_group, criterion_main};
@@ -20,6 +21,6 @@ criterion_group! {
         .warm_up_time(std::time::Duration::from_millis(300))
         .measurement_time(std::time::Duration::from_secs(3));
     targets = synthetic::build, synthetic::layered, synthetic::triangles, pairs::all, buildings::cells,
-        maps::views, culling::walks
+        maps::views, culling::walks, plans::cells
 }
 criterion_main!(engine);

@@ -210,9 +210,6 @@ pub(crate) fn run(args: &PlanArgs, global: &Global) -> Result<(), Failure> {
         (None, None) => Vec::new(),
     };
     let load_time = start.elapsed();
-    for note in &input.notes {
-        global.output().note(&format!("note: {note}"));
-    }
     let start = Instant::now();
     let around = cells::around(
         outlines
@@ -232,6 +229,9 @@ pub(crate) fn run(args: &PlanArgs, global: &Global) -> Result<(), Failure> {
         .map(|c| c.make(&plan, args.cells.as_deref()))
         .collect::<Result<Vec<PlanCell>, Failure>>()?;
     let build_time = start.elapsed();
+    for note in &input.notes {
+        global.output().note(&format!("note: {note}"));
+    }
     note_repairs(&plan, global);
     let start = Instant::now();
     let mut result = Map::new();
