@@ -44,6 +44,8 @@ pub struct ViewOptions {
     pub one_tree: bool,
     /// Leave out what is farther from the box around the cell than this, in grid steps: what is nearer is exact.
     pub reach: Option<u64>,
+    /// Test the opened kD leaves again against the finished trees [Bittner02, 6.6].
+    pub second_pass: bool,
     /// Keep the funnels.
     pub funnels: bool,
     /// Keep the certificate (not of points, and not with a reach).
@@ -59,6 +61,7 @@ impl Default for ViewOptions {
             test: BoxTest::Exact,
             one_tree: false,
             reach: None,
+            second_pass: false,
             funnels: false,
             proof: false,
             growth: false,
@@ -87,6 +90,10 @@ pub struct PlanView {
     pub work: PlanWork,
     /// Nodes of the kD-tree that were found hidden.
     pub culled: Vec<u32>,
+    /// After a second pass: the highest nodes of the kD-tree that are visible with all their leaves.
+    pub visible_nodes: Vec<u32>,
+    /// After a second pass: leaves that were opened and turned out to be hidden.
+    pub reclassified: Vec<u32>,
     /// How the trees grew, if that was asked for.
     pub growth: Growth,
 }
@@ -202,9 +209,14 @@ fn finish<S: Source>(
     cell: &CellShape,
     windows: Vec<Window>,
     (mut funnels, middle): (Vec<Funnel>, impl Fn(&Funnel) -> PlanLine),
-    swept: Swept<S>,
+    mut swept: Swept<S>,
     options: &ViewOptions,
 ) -> PlanView {
+    let (visible_nodes, reclassified) = if options.second_pass {
+        sweep::second_pass(plan, &mut swept)
+    } else {
+        Default::default()
+    };
     let fragments = answer::fragments(&mut funnels, middle);
     if !options.funnels {
         funnels.clear();
@@ -232,6 +244,8 @@ fn finish<S: Source>(
         },
         work: swept.work,
         culled: swept.culled,
+        visible_nodes,
+        reclassified,
         growth: swept.growth,
     }
 }

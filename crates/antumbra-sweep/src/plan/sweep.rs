@@ -157,6 +157,50 @@ pub(super) fn sweep<S: Source>(plan: &Plan, source: S, how: How) -> Swept<S> {
     sweeper.out
 }
 
+/// The second pass [Bittner02, 6.6]: tests the leaves that were opened against the finished trees, exactly. Returns
+/// the highest nodes all of whose leaves with pieces are visible, and the leaves that turned out to be hidden.
+pub(super) fn second_pass<S: Source>(plan: &Plan, swept: &mut Swept<S>) -> (Vec<u32>, Vec<u32>) {
+    let nodes = plan.kd().nodes();
+    let mut visible = vec![false; nodes.len()];
+    let mut hidden = Vec::new();
+    for &leaf in &swept.opened {
+        let bounds = &nodes[leaf as usize].bounds;
+        let source = &mut swept.source;
+        let seen = source.meets_rect(bounds) || source.sees(&swept.trees, bounds, BoxTest::Exact);
+        visible[leaf as usize] = seen;
+        if !seen {
+            hidden.push(leaf);
+        }
+    }
+    // Children come after their parents. Leaves without pieces ask for nothing.
+    for (i, node) in nodes.iter().enumerate().rev() {
+        visible[i] = match node.children() {
+            Some([a, b]) => visible[a as usize] && visible[b as usize],
+            None => visible[i] || node.count() == 0,
+        };
+    }
+    let mut highest = Vec::new();
+    let mut stack: Vec<u32> = if nodes.is_empty() {
+        Vec::new()
+    } else {
+        vec![0]
+    };
+    while let Some(index) = stack.pop() {
+        let node = &nodes[index as usize];
+        match node.children() {
+            _ if visible[index as usize] => {
+                let empty = node.children().is_none() && node.count() == 0;
+                highest.extend((!empty).then_some(index));
+            }
+            Some(children) => stack.extend(children),
+            None => {}
+        }
+    }
+    highest.sort_unstable();
+    hidden.sort_unstable();
+    (highest, hidden)
+}
+
 struct Sweeper<'p, S: Source> {
     plan: &'p Plan,
     how: How,

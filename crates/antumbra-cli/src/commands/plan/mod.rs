@@ -80,6 +80,9 @@ pub(crate) struct PlanArgs {
     /// One occlusion tree for all edges of a cell; no result depends on it
     #[arg(long)]
     one_tree: bool,
+    /// Test the opened kD leaves again when all occluders are known, and list the visible kD nodes
+    #[arg(long)]
+    second_pass: bool,
     /// The visible area of each cell: polygon, area, perimeter and depth; drawn with --svg
     #[arg(long, conflicts_with_all = ["matrix", "to"])]
     isovist: bool,
@@ -179,6 +182,7 @@ impl PlanArgs {
             },
             one_tree: self.one_tree,
             reach: self.reach.map(|r| (r / step).ceil() as u64),
+            second_pass: self.second_pass,
             funnels: self.svg.is_some() || self.line_space.is_some() || self.output.is_some(),
             proof: self.check,
             growth: false,

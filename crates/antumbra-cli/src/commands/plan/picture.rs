@@ -82,10 +82,15 @@ pub(super) fn plan(plan: &Plan, seen: &[Seen], areas: &[Isovist], y_down: bool) 
     let mut svg = paper.open("What a cell sees of a plan");
     let (mut culled, mut lines, mut red, mut blue) =
         (String::new(), String::new(), String::new(), String::new());
+    let mut again = String::new();
     for view in cells() {
         for &node in &view.culled {
             let b = plan.kd().nodes()[node as usize].bounds;
             culled += &outline(&paper, &b.corners().map(|c| c.to_f64()));
+        }
+        for &node in &view.reclassified {
+            let b = plan.kd().nodes()[node as usize].bounds;
+            again += &outline(&paper, &b.corners().map(|c| c.to_f64()));
         }
         extremal(&paper, plan, view, &mut lines);
         let point = |piece: usize, t: f64| {
@@ -117,6 +122,8 @@ pub(super) fn plan(plan: &Plan, seen: &[Seen], areas: &[Isovist], y_down: bool) 
         "fill=\"#e4e4e4\" stroke=\"#d2d2d2\" stroke-width=\"0.3\"",
         &culled,
     );
+    let style = "fill=\"#cfe8c9\" stroke=\"#a9cfa0\" stroke-width=\"0.3\"";
+    layer(&mut svg, "reclassified", style, &again);
     let mut seen_area = String::new();
     for ring in areas.iter().flat_map(|a| &a.polygons).flatten() {
         let steps: Vec<[f64; 2]> = ring.iter().map(|&p| plan.to_grid_f64(p)).collect();

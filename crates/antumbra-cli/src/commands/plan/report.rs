@@ -39,6 +39,18 @@ fn cell(args: &PlanArgs, plan: &Plan, seen: &Seen, area: Option<&Isovist>) -> Ma
     out.insert("tree_nodes".to_owned(), json!(seen.work.tree_nodes));
     out.insert("blockers".to_owned(), json!(seen.work.blockers));
     out.insert("kd_nodes_tested".to_owned(), json!(seen.work.nodes_tested));
+    if args.second_pass {
+        let nodes = seen.parts.iter().flat_map(|v| &v.visible_nodes);
+        let boxes: Vec<[[f64; 2]; 2]> = nodes
+            .map(|&n| {
+                let b = plan.kd().nodes()[n as usize].bounds;
+                [plan.to_scene(b.min), plan.to_scene(b.max)]
+            })
+            .collect();
+        let reclassified: usize = seen.parts.iter().map(|v| v.reclassified.len()).sum();
+        out.insert("visible_kd_nodes".to_owned(), json!(boxes));
+        out.insert("reclassified_kd_leaves".to_owned(), json!(reclassified));
+    }
     if let Some(area) = area {
         let isovist = json!({"area": area.area, "perimeter": area.perimeter, "depth": area.depth,
             "open": area.open, "polygons": area.polygons});
