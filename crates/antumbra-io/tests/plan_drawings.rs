@@ -117,7 +117,7 @@ fn damaged_drawings_say_where() {
         (
             "0\nSECTION\n2\nENTITIES\n0\nLINE\n10\n1.0\n",
             "a.dxf",
-            "unexpectedly ended",
+            "stops before its end",
         ),
         ("walls", "a.dxf", "a.dxf: "),
     ] {

@@ -77,6 +77,7 @@ fn damage(error: &DxfError) -> Damage {
         DxfError::UnexpectedCodePair(pair, _) => {
             format!("the group {} does not belong here", pair.code)
         }
+        DxfError::UnexpectedEndOfInput => "the drawing stops before its end".to_owned(),
         _ => error.to_string(),
     };
     let said = said.split(" at line").next().unwrap_or_default();

@@ -82,6 +82,13 @@ pub fn parse_plan(
             )
         })?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        if text.trim().is_empty() {
+            return Err(Damage::new(
+                Place::Whole,
+                "the file is empty",
+                "give a plan with lines or polygons",
+            ));
+        }
         let plan = match recognize(text, file) {
             PlanFormat::GeoJson => geojson::read(text, options)?,
             PlanFormat::Text => text::read(text)?,
