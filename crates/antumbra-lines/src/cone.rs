@@ -5,6 +5,8 @@
 //! follows the combinatorial adjacency test; new rays are computed directly from five defining
 //! rows, never from other rays, so that their size stays bounded.
 
+use std::ops::BitAnd;
+
 use crate::space::{PluckerSpace, RowId, VertexId};
 use antumbra_kernel::Sign;
 
@@ -375,7 +377,7 @@ impl Cone {
             }
             let own = tight(p.tight);
             for &(other, j) in &outside {
-                if own.and(other).at_least_four() {
+                if (own & other).at_least_four() {
                     let n = &self.rays[j as usize];
                     let common = p.tight & n.tight;
                     if on.only_two_share(common) {
@@ -555,34 +557,29 @@ impl Incidence {
 }
 
 /// A set of hyperplanes as bits.
-trait Set: Copy {
-    fn and(self, other: Self) -> Self;
+trait Set: Copy + Default + PartialEq + BitAnd<Output = Self> {
+    /// The set without its least member.
+    fn without_least(self) -> Self;
+
     /// Whether the set has four members; spares a count of bits where processors lack the
     /// instruction.
-    fn at_least_four(self) -> bool;
+    #[inline]
+    fn at_least_four(self) -> bool {
+        self.without_least().without_least().without_least() != Self::default()
+    }
 }
 
 impl Set for u64 {
     #[inline]
-    fn and(self, other: Self) -> Self {
-        self & other
-    }
-    #[inline]
-    fn at_least_four(self) -> bool {
-        let drop = |s: Self| s & s.wrapping_sub(1);
-        drop(drop(drop(self))) != 0
+    fn without_least(self) -> Self {
+        self & self.wrapping_sub(1)
     }
 }
 
 impl Set for u128 {
     #[inline]
-    fn and(self, other: Self) -> Self {
-        self & other
-    }
-    #[inline]
-    fn at_least_four(self) -> bool {
-        let drop = |s: Self| s & s.wrapping_sub(1);
-        drop(drop(drop(self))) != 0
+    fn without_least(self) -> Self {
+        self & self.wrapping_sub(1)
     }
 }
 

@@ -81,13 +81,15 @@ fn vertex(scene: &Scene, map: &VisibilityMap, v: u32) -> Value {
     json!({"ray": vertex.ray, "kind": kind, "corner": corner, "edges": edges})
 }
 
-fn polygon(scene: &Scene, id: PolygonId) -> Value {
+/// A polygon by its object and its number there.
+pub(crate) fn polygon(scene: &Scene, id: PolygonId) -> Value {
     let object = scene.polygon(id).object;
     let first = scene.object(object).polygons.start;
     json!({"object": object.0, "polygon": id.0 - first})
 }
 
-fn element(scene: &Scene, element: Element) -> Value {
+/// An edge of a polygon, or its inside.
+pub(crate) fn element(scene: &Scene, element: Element) -> Value {
     let mut value = polygon(scene, element.polygon);
     value["edge"] = json!(element.edge);
     value

@@ -17,6 +17,8 @@ use crate::load::{Loaded, SceneArgs, load};
 use crate::output::{check_writable, seconds, write_file};
 use crate::values::{PointArg, pixels};
 
+pub(crate) use export::{element, polygon};
+
 /// Options of `map`.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]

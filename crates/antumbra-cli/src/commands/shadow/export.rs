@@ -1,10 +1,10 @@
 //! Fragments and meshes as files and as things to draw.
 
-use antumbra::map::Element;
 use antumbra::shadow::{DiscontinuityMesh, Event, Fragment, Lighting, Shadows};
-use antumbra_scene::{ObjectInput, PartInput, PolygonId, Scene, SceneInput};
+use antumbra_scene::{ObjectInput, PartInput, Scene, SceneInput};
 use serde_json::{Value, json};
 
+use crate::commands::map::{element, polygon};
 use crate::picture::LitFace;
 
 /// All fragments. Polygons are numbered within their objects.
@@ -39,18 +39,6 @@ pub(super) fn mesh(scene: &Scene, mesh: &DiscontinuityMesh) -> Value {
         })
         .collect();
     json!({"light": mesh.light, "accuracy": "approximate", "edges": edges})
-}
-
-fn polygon(scene: &Scene, id: PolygonId) -> Value {
-    let object = scene.polygon(id).object;
-    let first = scene.object(object).polygons.start;
-    json!({"object": object.0, "polygon": id.0 - first})
-}
-
-fn element(scene: &Scene, element: Element) -> Value {
-    let mut value = polygon(scene, element.polygon);
-    value["edge"] = json!(element.edge);
-    value
 }
 
 /// The scene with the same objects, each of lit and shadowed parts by material.
