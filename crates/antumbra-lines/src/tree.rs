@@ -470,10 +470,23 @@ impl<P: Copy + Eq> OcclusionTree<P> {
     ) where
         S: LineSpace<Plane = P>,
     {
+        self.visit_with(space, slot, piece, |_, leaf, piece| visitor(leaf, piece));
+    }
+
+    /// As [`OcclusionTree::visit`]; the visitor gets the space, too, to look at pieces and to take them back.
+    pub fn visit_with<S>(
+        &self,
+        space: &mut S,
+        slot: Slot,
+        piece: S::Piece,
+        mut visitor: impl FnMut(&mut S, Leaf, S::Piece),
+    ) where
+        S: LineSpace<Plane = P>,
+    {
         let mut stack = vec![(self.child(slot), piece)];
         while let Some((child, piece)) = stack.pop() {
             match child {
-                Child::Leaf(leaf) => visitor(leaf, piece),
+                Child::Leaf(leaf) => visitor(space, leaf, piece),
                 Child::Node(node) => {
                     let TreeNode { plane, children } = self.nodes[node as usize];
                     match space.cut(piece, plane, Wall(node)) {

@@ -117,19 +117,17 @@ pub(super) fn blocked<S: LineSpace>(
     space: &mut S,
     tree: &OcclusionTree<S::Plane>,
     roots: Vec<S::Piece>,
-    mut visit: impl FnMut(&S::Piece, Occluder),
+    mut visit: impl FnMut(&S, &S::Piece, Occluder),
 ) where
     S::Plane: Copy + Eq,
 {
-    let mut found = Vec::new();
     for root in roots {
-        tree.visit(space, Slot::Root, root, |leaf, piece| {
+        tree.visit_with(space, Slot::Root, root, |space, leaf, piece| {
             if let Leaf::Blocked(occluder) = leaf {
-                visit(&piece, occluder);
+                visit(space, &piece, occluder);
             }
-            found.push(piece);
+            space.discard(piece);
         });
-        found.drain(..).for_each(|piece| space.discard(piece));
     }
 }
 

@@ -33,6 +33,14 @@ impl PlanLine {
         Self::Small(antumbra_kernel::line2d(a, b))
     }
 
+    /// From doubles that round integers: those below 2^53 are exact. `None` if one is larger.
+    #[inline]
+    #[must_use]
+    pub fn of_small(rounded: [f64; 3]) -> Option<Self> {
+        let small = rounded.iter().all(|c| c.abs() < (1_u64 << 53) as f64);
+        small.then(|| Self::Small(rounded.map(|c| c as i64)))
+    }
+
     /// From a ray of line space.
     #[must_use]
     pub fn of_ray(ray: &ExactRay) -> Self {
@@ -93,7 +101,10 @@ impl PlanLine {
                 total[k] += i128::from(l[k]);
             }
         }
-        Self::new(total.map(IBig::from))
+        match total.map(i64::try_from) {
+            [Ok(a), Ok(b), Ok(c)] => Self::Small([a, b, c]),
+            _ => Self::new(total.map(IBig::from)),
+        }
     }
 
     /// A line strictly inside the cone of some lines that avoids some points, none of which all of them pass: sums

@@ -160,15 +160,19 @@ fn blocked_funnels<S: Source>(
     (window, roots): (usize, Vec<sweep::PieceOf<S>>),
     out: &mut Vec<Funnel>,
 ) {
+    let mut rays = Vec::new();
     let mut cells = Vec::new();
-    answer::blocked(source.space(), tree, roots, |piece, occluder| {
-        cells.push((piece.clone(), occluder));
+    answer::blocked(source.space(), tree, roots, |space, piece, occluder| {
+        rays.extend(space.rays(piece).cloned());
+        cells.push((rays.len(), occluder));
     });
-    for (piece, occluder) in cells {
-        let lines = source.extremal(&piece);
+    let mut from = 0;
+    out.reserve(cells.len());
+    for (to, occluder) in cells {
+        let lines = rays[from..to].iter().map(|r| source.line(r)).collect();
+        from = to;
         let id = PieceId(source.depth_key(occluder));
         out.extend(Funnel::new(plan, window as u32, id, lines));
-        source.space().discard(piece);
     }
 }
 

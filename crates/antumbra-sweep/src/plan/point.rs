@@ -161,13 +161,10 @@ impl Source for PointLines {
         state != Visibility::Invisible
     }
 
-    fn extremal(&self, piece: &Wedge) -> Vec<PlanLine> {
+    fn line(&self, ray: &Ray2) -> PlanLine {
         let [ex, ey] = self.space.eye().to_i64().map(i128::from);
-        let line = |ray: &Ray2| {
-            let [dx, dy] = ray.exact;
-            PlanLine::new([-dy, dx, ex * dy - ey * dx].map(IBig::from))
-        };
-        piece.rays.iter().map(line).collect()
+        let [dx, dy] = ray.exact;
+        PlanLine::new([-dy, dx, ex * dy - ey * dx].map(IBig::from))
     }
 
     fn is_behind(&self, occluder: Occluder, points: &[Point2]) -> bool {

@@ -64,6 +64,19 @@ impl Ratio {
     /// Where a line meets a segment; `None` if it runs along it.
     #[must_use]
     pub fn on_segment([p, q]: [Point2; 2], line: &PlanLine) -> Option<Self> {
+        if let PlanLine::Small(l) = line
+            && l[0].unsigned_abs() < 1 << 27
+            && l[1].unsigned_abs() < 1 << 27
+            && l[2].unsigned_abs() < 1 << 51
+        {
+            // 50 and 50 and 51 bits: below 2^52 in magnitude, and their difference below 2^53.
+            let at = |p: Point2| {
+                let [x, y] = p.to_i64();
+                l[0] * x + l[1] * y + l[2]
+            };
+            let (n, m) = (at(p), at(q));
+            return (n != m).then(|| small(n, n - m));
+        }
         if let PlanLine::Small(l) = line {
             let at = |p: Point2| {
                 let [x, y] = p.to_i64();

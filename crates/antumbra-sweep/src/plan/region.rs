@@ -9,7 +9,7 @@
 use antumbra_kernel::{Point2, Rect, crossing2d, line2d, orient2d};
 use antumbra_lines::{
     Cone3, Corner3, Facet, Half, Leaf, LineSpace, Occluder, OcclusionTree, Plane3, PlaneLines,
-    SegmentOccluder, Visibility, Wall, facet,
+    Ray3, SegmentOccluder, Visibility, Wall, facet,
 };
 use antumbra_scene::plan::{CellShape, Plan};
 
@@ -450,9 +450,9 @@ impl Source for RegionLines {
         })
     }
 
-    fn extremal(&self, piece: &Cone3) -> Vec<PlanLine> {
-        let exact = |c: &Corner3| PlanLine::of_ray(&self.space.exact(&c.ray));
-        piece.corners.iter().map(exact).collect()
+    fn line(&self, ray: &Ray3) -> PlanLine {
+        PlanLine::of_small(ray.rounded())
+            .unwrap_or_else(|| PlanLine::of_ray(&self.space.exact(ray)))
     }
 
     fn is_behind(&self, occluder: Occluder, points: &[Point2]) -> bool {

@@ -30,6 +30,7 @@ pub(super) struct Blocker<P> {
 }
 
 pub(super) type PlaneOf<S> = <<S as Source>::Space as LineSpace>::Plane;
+pub(super) type RayOf<S> = <<S as Source>::Space as LineSpace>::Ray;
 pub(super) type PieceOf<S> = <<S as Source>::Space as LineSpace>::Piece;
 
 /// A source of lines in the plane.
@@ -66,8 +67,14 @@ pub(super) trait Source {
         test: BoxTest,
     ) -> bool;
 
+    /// A ray as a line.
+    fn line(&self, ray: &RayOf<Self>) -> PlanLine;
+
     /// The extreme rays of a piece as lines, in turning order.
-    fn extremal(&self, piece: &PieceOf<Self>) -> Vec<PlanLine>;
+    fn extremal(&mut self, piece: &PieceOf<Self>) -> Vec<PlanLine> {
+        let rays: Vec<RayOf<Self>> = self.space().rays(piece).cloned().collect();
+        rays.iter().map(|ray| self.line(ray)).collect()
+    }
 
     /// Whether points lie behind an occluder, or on its line. Exact.
     fn is_behind(&self, occluder: Occluder, points: &[Point2]) -> bool;
@@ -201,6 +208,13 @@ pub(super) fn second_pass<S: Source>(plan: &Plan, swept: &mut Swept<S>) -> (Vec<
     (highest, hidden)
 }
 
+/// What waits in the queue of the sweep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Waiting {
+    Node(u32),
+    Piece(PieceId),
+}
+
 struct Sweeper<'p, S: Source> {
     plan: &'p Plan,
     how: How,
@@ -218,13 +232,15 @@ impl<S: Source> Sweeper<'_, S> {
             i64::from(around.min.y) + i64::from(around.max.y),
         ];
         let mut stack = vec![0_u32];
+        let mut pieces = Vec::new();
         while let Some(index) = stack.pop() {
             if !self.opens(index) {
                 continue;
             }
             let node = &nodes[index as usize];
             let Some([lower, upper]) = node.children() else {
-                self.leaf(index);
+                self.leaf(index, &mut pieces);
+                pieces.drain(..).for_each(|id| self.insert(id));
                 continue;
             };
             let (axis, at) = node.split();
@@ -240,15 +256,33 @@ impl<S: Source> Sweeper<'_, S> {
         let nodes = self.plan.kd().nodes();
         let around = self.out.source.bounds();
         let distance = |index: u32| nodes[index as usize].bounds.distance_squared(&around);
-        // Of equally near nodes the later one: it is deeper, so that leaves come soon.
-        let mut queue = BinaryHeap::from([(Reverse(distance(0)), 0_u32)]);
-        while let Some((_, index)) = queue.pop() {
+        // Of equally near things the later one: it is deeper, so that pieces come soon. Pieces wait in the queue, too,
+        // so that they come in their own order rather than that of their leaves.
+        let mut queue = BinaryHeap::from([(Reverse(distance(0)), Waiting::Node(0))]);
+        let mut pieces = Vec::new();
+        while let Some((_, waiting)) = queue.pop() {
+            let index = match waiting {
+                Waiting::Node(index) => index,
+                Waiting::Piece(id) => {
+                    self.insert(id);
+                    continue;
+                }
+            };
             if !self.opens(index) {
                 continue;
             }
             match nodes[index as usize].children() {
-                Some(children) => queue.extend(children.map(|c| (Reverse(distance(c)), c))),
-                None => self.leaf(index),
+                Some(children) => {
+                    queue.extend(children.map(|c| (Reverse(distance(c)), Waiting::Node(c))));
+                }
+                None => {
+                    self.leaf(index, &mut pieces);
+                    queue.extend(pieces.drain(..).map(|id| {
+                        let ends = self.plan.pieces()[id.0 as usize];
+                        let rect = Rect::around(ends).unwrap_or(around);
+                        (Reverse(rect.distance_squared(&around)), Waiting::Piece(id))
+                    }));
+                }
             }
         }
     }
@@ -280,7 +314,8 @@ impl<S: Source> Sweeper<'_, S> {
         seen
     }
 
-    fn leaf(&mut self, index: u32) {
+    /// The pieces of a leaf that are to be inserted.
+    fn leaf(&mut self, index: u32, pieces: &mut Vec<PieceId>) {
         self.out.work.leaves_opened += 1;
         self.out.opened.push(index);
         let plan = self.plan;
@@ -291,7 +326,7 @@ impl<S: Source> Sweeper<'_, S> {
                 around.is_some_and(|r| is_beyond(reach, &r, &self.out.source.bounds()))
             });
             if !beyond && plan.occludes(id) && self.seen.insert(id) {
-                self.insert(id);
+                pieces.push(id);
             }
         }
     }

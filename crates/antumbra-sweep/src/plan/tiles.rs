@@ -46,9 +46,14 @@ pub fn tiles(plan: &Plan, cell: &CellShape, frame: &Rect) -> Vec<(Vec<[f64; 2]>,
             close(&mut swept, frame);
             let roots = swept.source.roots();
             let mut cells = Vec::new();
-            blocked(swept.source.space(), &swept.trees[0], roots, |wedge, k| {
-                cells.push((*wedge, k));
-            });
+            blocked(
+                swept.source.space(),
+                &swept.trees[0],
+                roots,
+                |_, wedge, k| {
+                    cells.push((*wedge, k));
+                },
+            );
             let eye = eye.to_f64();
             cells
                 .into_iter()
@@ -69,7 +74,7 @@ pub fn tiles(plan: &Plan, cell: &CellShape, frame: &Rect) -> Vec<(Vec<[f64; 2]>,
                 let tree = &swept.trees[window];
                 let roots = swept.source.roots(window, tree);
                 let mut cells = Vec::new();
-                blocked(swept.source.space(), tree, roots, |cone, k| {
+                blocked(swept.source.space(), tree, roots, |_, cone, k| {
                     cells.push((cone.clone(), k));
                 });
                 let w = swept.source.windows()[window];
