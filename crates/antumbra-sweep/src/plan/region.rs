@@ -247,9 +247,6 @@ impl RegionLines {
         if beyond.iter().all(|&o| o <= 0) {
             return false;
         }
-        if self.middle_seen(window, tree, bounds) {
-            return true;
-        }
         let Some(cone) = self.hull(window, &corners, &beyond) else {
             return true;
         };
@@ -437,13 +434,18 @@ impl Source for RegionLines {
     fn sees(&mut self, trees: &[OcclusionTree<Plane3>], bounds: &Rect, test: BoxTest) -> bool {
         (0..self.windows.len()).any(|window| {
             let tree = &trees[self.tree_of(window)];
-            let count = self.space.occluder_count();
+            let mark = self.space.mark();
+            let middle = self.middle_seen(window, tree, bounds);
+            self.space.rewind(mark);
+            if middle {
+                return true;
+            }
             if test == BoxTest::Exact {
+                let count = self.space.occluder_count();
                 let seen = self.seen_exactly(window, tree, bounds);
                 self.space.forget(Occluder(count as u32));
                 return seen;
             }
-            let mark = self.space.mark();
             let seen = self.seen_through(window, tree, bounds);
             self.space.rewind(mark);
             seen
