@@ -31,14 +31,11 @@ pub struct Ray3 {
     name: RayName,
 }
 
-/// What a ray is made from.
+/// What a ray is made from: two hyperplanes, first times second; or `GIVEN_RAY` and an entry of the space's table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum RayName {
-    /// An entry of the space's table.
-    Given(u32),
-    /// The cross product of two rows, first times second.
-    Meet(Plane3, Plane3),
-}
+struct RayName(u32, u32);
+
+const GIVEN_RAY: u32 = u32::MAX;
 
 impl Ray3 {
     /// The direction in doubles, each component within a relative error of 2^-52; not normalized.
@@ -52,10 +49,8 @@ impl Ray3 {
     #[inline]
     #[must_use]
     pub fn planes(&self) -> Option<[Plane3; 2]> {
-        match self.name {
-            RayName::Given(_) => None,
-            RayName::Meet(a, b) => Some([a, b]),
-        }
+        let RayName(a, b) = self.name;
+        (a != GIVEN_RAY).then_some([Plane3(a), Plane3(b)])
     }
 }
 
@@ -188,7 +183,7 @@ impl Space3 {
         self.given.push(direction);
         Ray3 {
             rounded: direction.map(|c| c as f64),
-            name: RayName::Given(self.given.len() as u32 - 1),
+            name: RayName(GIVEN_RAY, self.given.len() as u32 - 1),
         }
     }
 
@@ -266,13 +261,13 @@ impl Space3 {
             let m = |i: usize, j: usize| u[i] * v[j] - u[j] * v[i];
             return Ray3 {
                 rounded: [m(1, 2), m(2, 0), m(0, 1)],
-                name: RayName::Meet(a, b),
+                name: RayName(a.0, b.0),
             };
         }
         let exact = exact::meet(&self.rows[a.0 as usize], &self.rows[b.0 as usize]);
         Ray3 {
             rounded: exact.to_f64(),
-            name: RayName::Meet(a, b),
+            name: RayName(a.0, b.0),
         }
     }
 
@@ -280,8 +275,8 @@ impl Space3 {
     #[must_use]
     pub fn exact(&self, ray: &Ray3) -> ExactRay {
         match ray.name {
-            RayName::Given(i) => ExactRay::Given(self.given[i as usize]),
-            RayName::Meet(a, b) => exact::meet(&self.rows[a.0 as usize], &self.rows[b.0 as usize]),
+            RayName(GIVEN_RAY, i) => ExactRay::Given(self.given[i as usize]),
+            RayName(a, b) => exact::meet(&self.rows[a as usize], &self.rows[b as usize]),
         }
     }
 
@@ -308,9 +303,8 @@ impl Space3 {
 
     #[cold]
     fn side_by_name(&self, plane: Plane3, ray: &Ray3) -> (Sign, bool) {
-        if let RayName::Meet(a, b) = ray.name
-            && (a == plane || b == plane)
-        {
+        let RayName(a, b) = ray.name;
+        if a != GIVEN_RAY && (a == plane.0 || b == plane.0) {
             return (Sign::Zero, false);
         }
         let sign = exact::sign(&self.rows[plane.0 as usize], &self.exact(ray));

@@ -171,12 +171,13 @@ impl RegionLines {
         }
     }
 
-    /// What a segment blocks of a window's lines.
+    /// What a segment blocks of a window's lines: of all, or of those with one end on their left.
     fn block(
         &mut self,
         window: usize,
         [p, q]: [Point2; 2],
         key: u32,
+        only: Option<Point2>,
         out: &mut Vec<Blocker<Cone3>>,
     ) {
         let w = self.windows[window];
@@ -207,7 +208,8 @@ impl RegionLines {
             None
         };
         for left in [false, true] {
-            if !(if left { from_right } else { from_left }) {
+            let other = only.is_some_and(|p| p != if left { c } else { d });
+            if other || !(if left { from_right } else { from_left }) {
                 continue;
             }
             // `left`: c is on the left of the lines.
@@ -367,7 +369,14 @@ impl RegionLines {
                 .iter()
                 .any(|&p| orient2d(side[0], side[1], p) < 0);
             if facing && side[0] != side[1] {
-                self.block(window, side, SegmentOccluder::SIDE, &mut sides);
+                // Lines that enter have the first corner on their left.
+                self.block(
+                    window,
+                    side,
+                    SegmentOccluder::SIDE,
+                    Some(side[0]),
+                    &mut sides,
+                );
             }
         }
         let mut seen = false;
@@ -378,10 +387,7 @@ impl RegionLines {
             ..
         } in sides
         {
-            let segment = *self.space.segment(occluder);
-            // Entering, the box is behind the side.
-            let enters = corners.iter().all(|&c| segment.depth(c) >= 0);
-            if seen || !enters {
+            if seen {
                 self.space.discard(piece);
                 continue;
             }
@@ -419,7 +425,7 @@ impl Source for RegionLines {
 
     fn blockers(&mut self, piece: [Point2; 2], key: u32, out: &mut Vec<Blocker<Cone3>>) {
         for window in 0..self.windows.len() {
-            self.block(window, piece, key, out);
+            self.block(window, piece, key, None, out);
         }
     }
 
