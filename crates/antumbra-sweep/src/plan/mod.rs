@@ -17,6 +17,7 @@ mod tiles;
 
 use antumbra_lines::{LineSpace, OcclusionTree};
 use antumbra_scene::plan::{CellShape, PieceId, Plan};
+use rustc_hash::FxHashSet;
 
 use crate::occlusion::{BoxTest, SweepOrder};
 use crate::proof::PlanProof;
@@ -111,7 +112,7 @@ pub fn look(plan: &Plan, cell: &CellShape, options: &ViewOptions) -> PlanView {
         CellShape::Point(eye) => {
             let mut swept = sweep(plan, PointLines::new(*eye), how);
             let funnels = point_funnels(plan, &mut swept);
-            let grazing = std::mem::take(&mut swept.source.grazing);
+            let grazing = swept.source.grazing.clone();
             let middle = |f: &Funnel| PlanLine::avoiding(&f.lines, &grazing);
             finish(plan, cell, Vec::new(), (funnels, middle), swept, options)
         }
@@ -120,7 +121,7 @@ pub fn look(plan: &Plan, cell: &CellShape, options: &ViewOptions) -> PlanView {
             let mut swept = sweep(plan, source, how);
             let funnels = region_funnels(plan, &mut swept);
             let windows = swept.source.windows().to_vec();
-            let grazing = std::mem::take(&mut swept.source.grazing);
+            let grazing = swept.source.grazing.clone();
             let middle = |f: &Funnel| PlanLine::avoiding(&f.lines, &grazing[f.window as usize]);
             let trees = (options.proof && options.reach.is_none())
                 .then(|| certificate::trees(&swept.source, &swept.trees));
@@ -216,12 +217,13 @@ fn finish<S: Source>(
     mut swept: Swept<S>,
     options: &ViewOptions,
 ) -> PlanView {
+    let fragments = answer::fragments(&mut funnels, middle);
     let (visible_nodes, reclassified) = if options.second_pass {
-        sweep::second_pass(plan, &mut swept)
+        let seen: FxHashSet<PieceId> = fragments.iter().map(|f| f.piece).collect();
+        sweep::second_pass(plan, &mut swept, &seen)
     } else {
         Default::default()
     };
-    let fragments = answer::fragments(&mut funnels, middle);
     if !options.funnels {
         funnels.clear();
     }

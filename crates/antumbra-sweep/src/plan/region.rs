@@ -183,6 +183,9 @@ impl RegionLines {
         let w = self.windows[window];
         let (op, oq) = (w.beyond(p), w.beyond(q));
         if op <= 0 && oq <= 0 {
+            if key >= SegmentOccluder::SIDE {
+                return;
+            }
             let on = [(p, op), (q, oq)]
                 .into_iter()
                 .filter(|e| e.1 == 0 && w.spans(e.0));

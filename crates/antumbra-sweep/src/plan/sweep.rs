@@ -166,14 +166,23 @@ pub(super) fn sweep<S: Source>(plan: &Plan, source: S, how: How) -> Swept<S> {
 
 /// The second pass [Bittner02, 6.6]: tests the leaves that were opened against the finished trees, exactly. Returns
 /// the highest nodes all of whose leaves with pieces are visible, and the leaves that turned out to be hidden.
-pub(super) fn second_pass<S: Source>(plan: &Plan, swept: &mut Swept<S>) -> (Vec<u32>, Vec<u32>) {
+///
+/// A piece along the near side of a leaf hides the whole box, and is seen itself: leaves that hold a piece of
+/// which something is seen stay visible.
+pub(super) fn second_pass<S: Source>(
+    plan: &Plan,
+    swept: &mut Swept<S>,
+    pieces: &FxHashSet<PieceId>,
+) -> (Vec<u32>, Vec<u32>) {
     let nodes = plan.kd().nodes();
     let mut visible = vec![false; nodes.len()];
     let mut hidden = Vec::new();
     for &leaf in &swept.opened {
-        let bounds = &nodes[leaf as usize].bounds;
+        let node = &nodes[leaf as usize];
         let source = &mut swept.source;
-        let seen = source.meets_rect(bounds) || source.sees(&swept.trees, bounds, BoxTest::Exact);
+        let seen = plan.kd().items(node).iter().any(|id| pieces.contains(id))
+            || source.meets_rect(&node.bounds)
+            || source.sees(&swept.trees, &node.bounds, BoxTest::Exact);
         visible[leaf as usize] = seen;
         if !seen {
             hidden.push(leaf);

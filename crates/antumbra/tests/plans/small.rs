@@ -142,6 +142,25 @@ fn combine(
     hits
 }
 
+/// After a second pass every visible piece is in a leaf below a visible node.
+fn second_pass(plan: &Plan, shape: &CellShape) {
+    let options = SeeOptions {
+        second_pass: true,
+        test: BoxTest::Conservative,
+        ..SeeOptions::default()
+    };
+    let view = look(plan, shape, &options);
+    let mut below = view.visible_nodes.clone();
+    let mut listed = Vec::new();
+    while let Some(index) = below.pop() {
+        let node = &plan.kd().nodes()[index as usize];
+        assert!(!view.reclassified.contains(&index));
+        below.extend(node.children().into_iter().flatten());
+        listed.extend(plan.kd().items(node));
+    }
+    assert!(view.fragments.iter().all(|f| listed.contains(&f.piece)));
+}
+
 /// The certificate holds, and altered ones do not.
 fn certificate(plan: &Plan, shape: &CellShape, random: &mut Random) {
     let options = SeeOptions {
@@ -206,6 +225,7 @@ fn tiny_scenes_agree_with_the_oracle_and_with_themselves() {
             let view = look(&plan, shape, &SeeOptions::default());
             confirm(&oracle, &view);
             certificate(&plan, shape, &mut random);
+            second_pass(&plan, shape);
             hits += shoot(&plan, &oracle, &view, 60, &mut random);
             if !matches!(shape, CellShape::Point(_)) {
                 hits += combine(&plan, &oracle, &view, &mut random, 150);
