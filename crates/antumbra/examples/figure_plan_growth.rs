@@ -112,9 +112,9 @@ fn svg(curves: &[Curve]) -> String {
         let _ = writeln!(
             out,
             "<path d=\"M{}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"1.5\"/>\
-             <text x=\"390\" y=\"{}\" fill=\"{color}\">{name}</text>",
+             <text x=\"90\" y=\"{}\" fill=\"{color}\">{name}</text>",
             path.join(" L"),
-            250 + 18 * i
+            60 + 18 * i
         );
     }
     out + "</svg>\n"
