@@ -128,6 +128,27 @@ fn damaged_drawings_say_where() {
     let broken = dxf("0\nLINE\n8\nwall\n10\nwide\n20\n0.0\n");
     let error = parse(&broken, "a.dxf").unwrap_err();
     assert!(error.contains("a.dxf: line "), "{error}");
+    let many =
+        dxf("0\nINSERT\n8\n0\n2\nDOOR\n10\n0.0\n20\n0.0\n70\n3000\n71\n3000\n44\n1.0\n45\n1.0\n");
+    let error = parse(&many, "a.dxf").unwrap_err();
+    assert!(error.contains("more than"), "{error}");
+    let laughs: String = (1..16)
+        .map(|i| {
+            let of = format!("<use href='#g{}'/>", i - 1).repeat(8);
+            format!("<g id='g{i}'>{of}</g>")
+        })
+        .collect();
+    let error = parse(
+        &format!("<svg><defs><g id='g0'/>{laughs}</defs><use href='#g15'/></svg>"),
+        "a.svg",
+    )
+    .unwrap_err();
+    assert!(error.contains("more than"), "{error}");
+    for depth in [300, 100_000] {
+        let deep = "<g>".repeat(depth) + &"</g>".repeat(depth);
+        let error = parse(&format!("<svg>{deep}</svg>"), "a.svg").unwrap_err();
+        assert!(error.contains("nested"), "{error}");
+    }
     let missing = dxf("0\nINSERT\n8\n0\n2\nWINDOW\n10\n0.0\n20\n0.0\n30\n0.0\n");
     let error = parse(&missing, "a.dxf").unwrap_err();
     assert!(error.contains("no block `WINDOW`"), "{error}");

@@ -124,15 +124,8 @@ impl<'a> Reader<'a> {
             self.left_out += 1;
             return Ok(());
         };
-        self.drawn += 1;
+        self.count()?;
         let name = entity.common.handle.as_string();
-        if self.drawn > ENTITIES {
-            return Err(Damage::new(
-                Place::Whole,
-                format!("more than {ENTITIES} entities are drawn"),
-                "split the drawing",
-            ));
-        }
         self.curves += u32::from(curved);
         let at = |p: Point| {
             let p = context.transform * p;
@@ -150,6 +143,19 @@ impl<'a> Reader<'a> {
         self.plan.features.push(name);
         push_line(&mut self.plan, &line, class, feature);
         Ok(())
+    }
+
+    /// Counts an entity or an inserted block.
+    fn count(&mut self) -> Result<(), Damage> {
+        self.drawn += 1;
+        if self.drawn <= ENTITIES {
+            return Ok(());
+        }
+        Err(Damage::new(
+            Place::Whole,
+            format!("more than {ENTITIES} entities and blocks are drawn"),
+            "split the drawing",
+        ))
     }
 
     fn insert(
@@ -190,6 +196,7 @@ impl<'a> Reader<'a> {
                     layer: Some(layer),
                     nested: context.nested + 1,
                 };
+                self.count()?;
                 for entity in &block.entities {
                     self.entity(entity, &inner)?;
                 }
@@ -238,6 +245,7 @@ fn lines(entity: &EntityType) -> Option<Drawn> {
             let major = [e.major_axis.x, e.major_axis.y];
             let ratio = e.minor_axis_ratio * e.normal.z.signum();
             let minor = [-major[1] * ratio, major[0] * ratio];
+            // Files write the full turn with a few decimals less than a double has.
             let whole = (e.end_parameter - e.start_parameter - TAU).abs() < 1e-9;
             let turn = (e.end_parameter - e.start_parameter).rem_euclid(TAU);
             let from = e.start_parameter;

@@ -4,6 +4,8 @@
 //!
 //! Coordinates stay doubles, which is why no renderer's tree (of single floats) is read.
 
+use std::collections::HashMap;
+
 use antumbra_scene::plan::PlanInput;
 use kurbo::{Affine, BezPath, Point};
 use roxmltree::{Document, Node, ParsingOptions};
@@ -14,6 +16,8 @@ use crate::error::{Damage, Place};
 
 /// `use` elements within `use` elements at most.
 const NESTED: u32 = 16;
+/// Elements within elements at most.
+const DEPTH: u32 = 256;
 /// Elements drawn at most: `use` elements may multiply a small file without end.
 const ELEMENTS: u32 = 4_000_000;
 
@@ -43,7 +47,12 @@ pub(super) fn read(text: &str) -> Result<PlanInput, Damage> {
             "give an SVG drawing",
         ));
     }
+    let named = root
+        .descendants()
+        .filter_map(|n| Some((n.attribute("id")?, n)));
     let mut reader = Reader {
+        // The first of equal names counts.
+        named: named.collect::<Vec<_>>().into_iter().rev().collect(),
         plan: PlanInput::default(),
         curves: 0,
         skipped: 0,
@@ -75,6 +84,7 @@ struct Context {
     transform: Affine,
     class: String,
     nested: u32,
+    depth: u32,
 }
 
 impl Default for Context {
@@ -83,29 +93,44 @@ impl Default for Context {
             transform: Affine::IDENTITY,
             class: String::new(),
             nested: 0,
+            depth: 0,
         }
     }
 }
 
-struct Reader {
+struct Reader<'a, 'i> {
+    /// The elements that have a name, for those that use them.
+    named: HashMap<&'a str, Node<'a, 'i>>,
     plan: PlanInput,
     curves: u32,
     skipped: u32,
     drawn: u32,
 }
 
-impl Reader {
-    fn children(&mut self, node: Node<'_, '_>, context: &Context) -> Result<(), Damage> {
+impl<'a, 'i> Reader<'a, 'i> {
+    fn children(&mut self, node: Node<'a, 'i>, context: &Context) -> Result<(), Damage> {
         node.children()
             .filter(Node::is_element)
             .try_for_each(|child| self.element(child, context))
     }
 
-    fn element(&mut self, node: Node<'_, '_>, context: &Context) -> Result<(), Damage> {
+    fn element(&mut self, node: Node<'a, 'i>, context: &Context) -> Result<(), Damage> {
         if hidden(node) {
             return Ok(());
         }
+        self.drawn += 1;
+        if self.drawn > ELEMENTS {
+            return Err(Damage::new(
+                place(node),
+                format!("more than {ELEMENTS} elements are drawn"),
+                "split the drawing",
+            ));
+        }
         let mut inner = context.clone();
+        inner.depth += 1;
+        if inner.depth > DEPTH {
+            return Err(too_deep(place(node)));
+        }
         inner.transform = context.transform * transform(node)?;
         match node.tag_name().name() {
             "g" | "a" | "switch" | "svg" => {
@@ -127,7 +152,7 @@ impl Reader {
     }
 
     /// What a `use` element refers to, where it says.
-    fn used(&mut self, node: Node<'_, '_>, mut inner: Context) -> Result<(), Damage> {
+    fn used(&mut self, node: Node<'a, 'i>, mut inner: Context) -> Result<(), Damage> {
         let link = node.attributes().find(|a| a.name() == "href");
         let Some(id) = link.and_then(|a| a.value().strip_prefix('#')) else {
             return Ok(());
@@ -140,8 +165,7 @@ impl Reader {
                 "draw the element itself",
             ));
         }
-        let root = node.document().root();
-        let Some(target) = root.descendants().find(|n| n.attribute("id") == Some(id)) else {
+        let Some(&target) = self.named.get(id) else {
             return Err(Damage::broken(
                 place(node),
                 format!(
@@ -161,15 +185,7 @@ impl Reader {
         }
     }
 
-    fn draw(&mut self, node: Node<'_, '_>, context: &Context, shape: &Shape) -> Result<(), Damage> {
-        self.drawn += 1;
-        if self.drawn > ELEMENTS {
-            return Err(Damage::new(
-                place(node),
-                format!("more than {ELEMENTS} elements are drawn"),
-                "split the drawing",
-            ));
-        }
+    fn draw(&mut self, node: Node<'a, 'i>, context: &Context, shape: &Shape) -> Result<(), Damage> {
         let lines = match shape {
             Shape::Lines(lines) => {
                 let at = |p: &Point| {
@@ -338,6 +354,14 @@ fn layer(node: Node<'_, '_>) -> Option<String> {
         .or(node.attribute("class"))
         .or(node.attribute("id"))
         .map(str::to_owned)
+}
+
+fn too_deep(place: Place) -> Damage {
+    Damage::new(
+        place,
+        format!("elements are nested more than {DEPTH} deep"),
+        "ungroup them in the drawing",
+    )
 }
 
 fn place(node: Node<'_, '_>) -> Place {
