@@ -136,6 +136,23 @@ impl Aabb {
         self.with(other.min).with(other.max)
     }
 
+    /// What the closed boxes share; `None` if that is nothing.
+    #[must_use]
+    pub fn intersection(&self, other: &Self) -> Option<Self> {
+        self.touches(other).then(|| Self {
+            min: Point::new(
+                self.min.x.max(other.min.x),
+                self.min.y.max(other.min.y),
+                self.min.z.max(other.min.z),
+            ),
+            max: Point::new(
+                self.max.x.min(other.max.x),
+                self.max.y.min(other.max.y),
+                self.max.z.min(other.max.z),
+            ),
+        })
+    }
+
     /// Whether the closed boxes share a point.
     #[inline]
     #[must_use]

@@ -28,4 +28,4 @@ pub use quadric::{RealLines, real_lines};
 pub use space::{PluckerSpace, RowId, VertexId};
 pub use start::{Chord, Gate, Start, common_line, common_line_row, start_halfspaces};
 pub use thin::nearly_real;
-pub use tree::{Child, Leaf, OcclusionTree, Range, Slot, TreeNode, Visibility};
+pub use tree::{Child, Leaf, OcclusionTree, Slot, TreeNode, Visibility};

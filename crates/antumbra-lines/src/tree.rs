@@ -65,42 +65,24 @@ pub enum Slot {
     Side(u32, Half),
 }
 
-/// How far away something is from the source of the lines: nowhere nearer than, nowhere farther than. In any unit
-/// that grows along the lines.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Range {
-    /// A lower bound.
-    pub near: u32,
-    /// An upper bound.
-    pub far: u32,
-}
-
-impl Range {
-    /// Nothing is known.
-    pub const ANY: Self = Self {
-        near: 0,
-        far: u32::MAX,
-    };
-}
+/// Room for what waits in a walk: it grows where trees are deeper.
+const STACK: usize = 32;
 
 /// An occlusion tree over the lines of some space.
 #[derive(Clone, Debug)]
 pub struct OcclusionTree<P> {
     nodes: Vec<TreeNode<P>>,
     root: Child,
-    /// For each node its parent, and the maximal visibility distance below it [Bittner02, 6.5.5].
+    /// For each node how far one sees at most below it [Bittner02, 6.5.5].
     depths: Vec<Depth>,
-    /// The upper bound of each occluder's range.
-    fars: Vec<u32>,
 }
 
+/// The maximal visibility distances on both sides of a node, and the slot that holds it.
 #[derive(Clone, Copy, Debug)]
 struct Depth {
-    parent: u32,
-    reach: u32,
+    above: Slot,
+    reach: [u32; 2],
 }
-
-const NO_PARENT: u32 = u32::MAX;
 
 impl<P: Copy + Eq> Default for OcclusionTree<P> {
     fn default() -> Self {
@@ -116,7 +98,6 @@ impl<P: Copy + Eq> OcclusionTree<P> {
             nodes: Vec::new(),
             root: Child::Leaf(Leaf::Open),
             depths: Vec::new(),
-            fars: Vec::new(),
         }
     }
 
@@ -160,7 +141,7 @@ impl<P: Copy + Eq> OcclusionTree<P> {
     pub fn partition(&mut self, plane: P) {
         let open: Vec<Slot> = self.slots().filter(|&s| self.is_open(s)).collect();
         for slot in open {
-            self.put_node(slot, plane, [Child::Leaf(Leaf::Open); 2]);
+            self.put_node(slot, plane, [(Leaf::Open, u32::MAX); 2]);
         }
     }
 
@@ -168,9 +149,9 @@ impl<P: Copy + Eq> OcclusionTree<P> {
     pub fn restrict(&mut self, plane: P, side: Half) {
         let open: Vec<Slot> = self.slots().filter(|&s| self.is_open(s)).collect();
         for slot in open {
-            let mut children = [Child::Leaf(Leaf::Outside); 2];
-            children[side.index()] = Child::Leaf(Leaf::Open);
-            self.put_node(slot, plane, children);
+            let mut leaves = [(Leaf::Outside, 0); 2];
+            leaves[side.index()] = (Leaf::Open, u32::MAX);
+            self.put_node(slot, plane, leaves);
         }
     }
 
@@ -192,15 +173,14 @@ impl<P: Copy + Eq> OcclusionTree<P> {
         }
     }
 
-    fn put_node(&mut self, slot: Slot, plane: P, children: [Child; 2]) -> u32 {
+    /// Puts a node in the place of a leaf: its leaves, and how far one sees in them.
+    fn put_node(&mut self, slot: Slot, plane: P, leaves: [(Leaf, u32); 2]) -> u32 {
         let node = self.nodes.len() as u32;
+        let children = leaves.map(|(leaf, _)| Child::Leaf(leaf));
         self.nodes.push(TreeNode { plane, children });
         self.depths.push(Depth {
-            parent: match slot {
-                Slot::Root => NO_PARENT,
-                Slot::Side(parent, _) => parent,
-            },
-            reach: u32::MAX,
+            above: slot,
+            reach: leaves.map(|(_, reach)| reach),
         });
         self.put(slot, Child::Node(node));
         node
@@ -214,35 +194,33 @@ impl<P: Copy + Eq> OcclusionTree<P> {
     where
         S: DepthSpace<Plane = P>,
     {
-        self.insert_at(space, piece, occluder, Range::ANY)
+        self.insert_at(space, piece, occluder, 0, |_, _| u32::MAX)
     }
 
-    /// As [`OcclusionTree::insert`], for an occluder of known range: parts of the tree that see nothing as far away
-    /// are not entered.
+    /// As [`OcclusionTree::insert`], for an occluder that is nowhere nearer than `near`: parts of the tree that see
+    /// nothing as far away are not entered. `far` tells how far the occluder is at most on the lines of a piece.
     pub fn insert_at<S>(
         &mut self,
         space: &mut S,
         piece: S::Piece,
         occluder: Occluder,
-        range: Range,
+        near: u32,
+        far: impl Fn(&S, &S::Piece) -> u32,
     ) -> bool
     where
         S: DepthSpace<Plane = P>,
     {
-        let index = occluder.0 as usize;
-        if self.fars.len() <= index {
-            self.fars.resize(index + 1, u32::MAX);
-        }
-        self.fars[index] = range.far;
         let mut seen = false;
-        let mut stack = vec![(Slot::Root, piece)];
+        let mut stack = Vec::with_capacity(STACK);
+        stack.push((Slot::Root, piece));
         while let Some((slot, piece)) = stack.pop() {
+            let reach = self.reach(slot);
+            if reach < near {
+                space.discard(piece);
+                continue;
+            }
             match self.child(slot) {
                 Child::Node(node) => {
-                    if self.depths[node as usize].reach < range.near {
-                        space.discard(piece);
-                        continue;
-                    }
                     let plane = self.nodes[node as usize].plane;
                     match space.cut(piece, plane, Wall(node)) {
                         Cut::Whole(half, piece) => stack.push((Slot::Side(node, half), piece)),
@@ -254,12 +232,15 @@ impl<P: Copy + Eq> OcclusionTree<P> {
                 }
                 Child::Leaf(Leaf::Outside) => space.discard(piece),
                 Child::Leaf(Leaf::Open) => {
-                    self.plant(space, slot, piece, occluder, Leaf::Open);
+                    let far = far(space, &piece);
+                    self.plant(space, slot, piece, (occluder, far), (Leaf::Open, reach));
                     seen = true;
                 }
                 Child::Leaf(Leaf::Blocked(old)) => {
                     if let Some(front) = in_front(space, piece, occluder, old) {
-                        self.plant(space, slot, front, occluder, Leaf::Blocked(old));
+                        let far = far(space, &front).min(reach);
+                        let around = (Leaf::Blocked(old), reach);
+                        self.plant(space, slot, front, (occluder, far), around);
                         seen = true;
                     }
                 }
@@ -274,47 +255,39 @@ impl<P: Copy + Eq> OcclusionTree<P> {
         space: &mut S,
         mut slot: Slot,
         piece: S::Piece,
-        occluder: Occluder,
-        around: Leaf,
+        (occluder, far): (Occluder, u32),
+        around: (Leaf, u32),
     ) where
         S: LineSpace<Plane = P>,
     {
         for facet in space.facets(&piece).filter(|f| f.wall.is_none()) {
-            let node = self.put_node(slot, facet.plane, [Child::Leaf(around); 2]);
+            let node = self.put_node(slot, facet.plane, [around; 2]);
             slot = Slot::Side(node, facet.side);
         }
         self.put(slot, Child::Leaf(Leaf::Blocked(occluder)));
         space.discard(piece);
-        self.settle(slot);
+        self.settle(slot, far);
     }
 
     /// Brings the visibility distances above a slot up to date.
-    fn settle(&mut self, slot: Slot) {
-        let Slot::Side(mut node, _) = slot else {
-            return;
-        };
-        loop {
-            let children = self.nodes[node as usize].children;
-            let reach = self.reach(children[0]).max(self.reach(children[1]));
+    fn settle(&mut self, mut slot: Slot, mut reach: u32) {
+        while let Slot::Side(node, half) = slot {
             let depth = &mut self.depths[node as usize];
-            if depth.reach == reach {
+            if depth.reach[half.index()] == reach {
                 return;
             }
-            depth.reach = reach;
-            if depth.parent == NO_PARENT {
-                return;
-            }
-            node = depth.parent;
+            depth.reach[half.index()] = reach;
+            reach = depth.reach[0].max(depth.reach[1]);
+            slot = depth.above;
         }
     }
 
-    /// How far one sees through a child at most.
-    fn reach(&self, child: Child) -> u32 {
-        match child {
-            Child::Node(node) => self.depths[node as usize].reach,
-            Child::Leaf(Leaf::Open) => u32::MAX,
-            Child::Leaf(Leaf::Outside) => 0,
-            Child::Leaf(Leaf::Blocked(occluder)) => self.fars[occluder.0 as usize],
+    /// How far one sees through a slot at most.
+    #[inline]
+    fn reach(&self, slot: Slot) -> u32 {
+        match slot {
+            Slot::Root => u32::MAX,
+            Slot::Side(node, half) => self.depths[node as usize].reach[half.index()],
         }
     }
 
@@ -375,19 +348,18 @@ impl<P: Copy + Eq> OcclusionTree<P> {
         S: LineSpace<Plane = P>,
     {
         let mut result = None;
-        let mut stack = vec![(self.root, piece)];
-        while let Some((child, piece)) = stack.pop() {
-            let state = match child {
-                Child::Node(node) if self.depths[node as usize].reach < near => {
-                    Visibility::Invisible
-                }
+        let mut stack = Vec::with_capacity(STACK);
+        stack.push((Slot::Root, piece));
+        while let Some((slot, piece)) = stack.pop() {
+            let state = match self.child(slot) {
+                _ if self.reach(slot) < near => Visibility::Invisible,
                 Child::Node(node) => {
-                    let TreeNode { plane, children } = self.nodes[node as usize];
+                    let plane = self.nodes[node as usize].plane;
                     match space.cut(piece, plane, Wall(node)) {
-                        Cut::Whole(half, piece) => stack.push((children[half.index()], piece)),
+                        Cut::Whole(half, piece) => stack.push((Slot::Side(node, half), piece)),
                         Cut::Parts([negative, positive]) => {
-                            stack.push((children[1], positive));
-                            stack.push((children[0], negative));
+                            stack.push((Slot::Side(node, Half::Positive), positive));
+                            stack.push((Slot::Side(node, Half::Negative), negative));
                         }
                     }
                     continue;
@@ -435,15 +407,19 @@ impl<P: Copy + Eq> OcclusionTree<P> {
     where
         S: LineSpace<Plane = P>,
     {
-        let mut stack = vec![self.root];
-        while let Some(child) = stack.pop() {
-            match child {
-                Child::Node(node) if self.depths[node as usize].reach < near => {}
+        let mut stack = Vec::with_capacity(STACK);
+        stack.push(Slot::Root);
+        while let Some(slot) = stack.pop() {
+            match self.child(slot) {
+                _ if self.reach(slot) < near => {}
                 Child::Node(node) => {
-                    let TreeNode { plane, children } = self.nodes[node as usize];
+                    let plane = self.nodes[node as usize].plane;
                     match space.position(piece, plane) {
-                        Position::In(half) => stack.push(children[half.index()]),
-                        Position::Both => stack.extend([children[1], children[0]]),
+                        Position::In(half) => stack.push(Slot::Side(node, half)),
+                        Position::Both => stack.extend([
+                            Slot::Side(node, Half::Positive),
+                            Slot::Side(node, Half::Negative),
+                        ]),
                     }
                 }
                 Child::Leaf(Leaf::Outside) => {}

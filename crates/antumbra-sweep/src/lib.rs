@@ -13,6 +13,7 @@ pub mod plan;
 mod point;
 mod proof;
 mod random;
+mod range;
 mod ray;
 mod region;
 mod sample;

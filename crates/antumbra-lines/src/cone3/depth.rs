@@ -84,6 +84,25 @@ impl Space3 {
         self.wide_plane(row)
     }
 
+    /// How far from a viewpoint a ray meets the occluder's plane: an upper bound, infinite where it cannot be told.
+    ///
+    /// # Panics
+    /// If there is no such occluder.
+    #[must_use]
+    pub fn farthest(&self, occluder: Occluder, ray: &Ray3) -> f64 {
+        let (entry, r) = (&self.occluders[occluder.0 as usize], ray.rounded);
+        let p: [f64; 3] = std::array::from_fn(|k| entry.row[k] * r[k]);
+        let size = p[0].abs() + p[1].abs() + p[2].abs();
+        // A lower bound of the product, by the proof above.
+        let least = p[0] + p[1] + p[2] - size * FILTER;
+        if least <= 0.0 {
+            return f64::INFINITY;
+        }
+        let length = (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]).sqrt();
+        // The scale, the length, two products and a quotient: together below 2^-48.
+        entry.scale / least * length * (1.0 + FILTER)
+    }
+
     /// Where a ray meets the occluder's plane, as a multiple of the ray (viewpoints only). Rounded.
     ///
     /// # Panics
@@ -175,4 +194,45 @@ fn to_big(v: &Int<6>) -> dashu_int::IBig {
         (sum << 64) + dashu_int::IBig::from(limb)
     });
     if v.is_negative() { -big } else { big }
+}
+
+#[cfg(test)]
+mod tests {
+    use antumbra_testkit::random::Random;
+
+    use super::{Nearness, Space3};
+
+    #[test]
+    fn nothing_of_an_occluder_is_beyond_its_bound() {
+        let mut random = Random::new(7);
+        let mut number = |size: i64| random.integer(-size, size);
+        for round in 0..4_000 {
+            // A plane through a point seen from the origin; some are seen nearly edge-on.
+            let point: [i64; 3] = std::array::from_fn(|_| number(1 << 24));
+            let mut normal: [i64; 3] = std::array::from_fn(|_| number(1 << 49));
+            if round % 2 == 0 {
+                let v: [i64; 3] = std::array::from_fn(|_| number(1 << 23));
+                let m = |i: usize, j: usize| point[i] * v[j] - point[j] * v[i];
+                normal = [m(1, 2) + number(1), m(2, 0), m(0, 1)];
+            }
+            let scale: i128 = (0..3)
+                .map(|k| i128::from(normal[k]) * i128::from(point[k]))
+                .sum();
+            if scale == 0 {
+                continue;
+            }
+            let sign = scale.signum();
+            let mut space = Space3::new();
+            let row = normal.map(|c| i128::from(c) * sign);
+            let scale = scale.abs();
+            let occluder = space.occluder(Nearness { row, scale }, 0);
+            let ray = space.ray(point);
+            let length = point.map(|c| (c as f64).powi(2)).iter().sum::<f64>().sqrt();
+            let bound = space.farthest(occluder, &ray);
+            assert!(bound >= length, "{bound} for {length}");
+            if round % 2 == 1 {
+                assert!(bound < length * 1.001, "{bound} for {length}");
+            }
+        }
+    }
 }

@@ -54,7 +54,7 @@ impl ExactRay {
     pub fn to_f64(&self) -> [f64; 3] {
         match self {
             Self::Given(v) => v.map(|c| c as f64),
-            Self::Narrow(v) => v.map(|c| c as f64),
+            Self::Narrow(v) => v.map(rounded),
             Self::Wide(v) => v.map(|c| c.to_f64_scaled(0)),
         }
     }
@@ -98,6 +98,20 @@ impl Row {
             Self::Wide(row)
         }
     }
+}
+
+/// The double of an integer, within a relative error of 2^-52: its leading 63 bits, then rounded. Twice as fast as
+/// the conversion that rounds once.
+fn rounded(v: i128) -> f64 {
+    let low = v as i64;
+    if i128::from(low) == v {
+        return low as f64;
+    }
+    let magnitude = v.unsigned_abs();
+    let shift = 65 - magnitude.leading_zeros();
+    let leading = (magnitude >> shift) as i64 as f64;
+    let scaled = leading * f64::from_bits(u64::from(1023 + shift) << 52);
+    if v < 0 { -scaled } else { scaled }
 }
 
 /// Bits of a middle row's magnitude.
@@ -171,7 +185,7 @@ mod tests {
     use antumbra_kernel::{I256, Int, Sign};
     use dashu_int::IBig;
 
-    use super::{ExactRay, Row, meet, sign};
+    use super::{ExactRay, Row, meet, rounded, sign};
 
     fn big<const N: usize>(v: &Int<N>) -> IBig {
         let negative = v.is_negative();
@@ -218,6 +232,25 @@ mod tests {
             out.push(Row::Wide([w(0, wide), w(1, less), w(2, wide)]));
         }
         out
+    }
+
+    #[test]
+    fn integers_are_rounded_within_their_bound() {
+        for shift in 0..127 {
+            for offset in [-1_i128, 0, 1, 12_345_678_901_234_567] {
+                for v in [
+                    (1_i128 << shift) + offset,
+                    -(1 << shift) - offset,
+                    i128::MIN + offset.abs(),
+                ] {
+                    let exact = IBig::from(v);
+                    let error = IBig::try_from(rounded(v)).expect("an integer") - &exact;
+                    let size = if exact < IBig::ZERO { -&exact } else { exact };
+                    let error = if error < IBig::ZERO { -error } else { error };
+                    assert!((error << 52) <= size, "{v}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -12,13 +12,14 @@ mod view;
 
 use std::collections::BinaryHeap;
 
+use antumbra_kernel::Aabb;
 use antumbra_lines::{Leaf, LineSpace, Occluder, OcclusionTree, Visibility};
 use antumbra_scene::{KdBox, KdNode, PolygonId, Scene, SeenPolygons};
 
 pub use parallel::ParallelView;
 pub use point::PointView;
 pub use twins::Twins;
-pub use view::{Region, Sides, View};
+pub use view::{Range, Region, Sides, View};
 
 use crate::occlusion::view::PlaneOf;
 
@@ -225,22 +226,26 @@ impl<V: View> Sweeper<'_, V> {
         if self.options.test == BoxTest::Never {
             return true;
         }
-        if let KdNode::Leaf { .. } = self.scene.kd().nodes()[here.node as usize] {
+        let leaf = matches!(
+            self.scene.kd().nodes()[here.node as usize],
+            KdNode::Leaf { .. }
+        );
+        let mut bounds = here.bounds;
+        if leaf {
             let items = self.scene.kd().items(here.node);
-            let scene = self.scene;
-            let old = |id| self.seen.contains(id) || !scene.polygon(id).occludes;
-            if items.iter().all(|&id| old(id)) {
+            let Some(content) = self.content(items, &bounds) else {
                 // Nothing new in it, seen or not: it counts as opened, unless it is empty.
                 self.work.leaves_opened += u64::from(!items.is_empty());
                 return false;
-            }
+            };
+            bounds = content;
         }
         self.work.nodes_tested += 1;
         let mark = self.view.mark();
-        let state = match self.view.region(&here.bounds) {
+        let state = match self.view.region(&bounds) {
             Region::Touching => Visibility::Partial,
             Region::Nowhere => Visibility::Invisible,
-            Region::Piece(piece) => self.test(here, piece),
+            Region::Piece(piece) => self.test(&bounds, leaf, piece),
         };
         self.view.rewind(mark);
         let opens = state != Visibility::Invisible;
@@ -248,8 +253,21 @@ impl<V: View> Sweeper<'_, V> {
         opens
     }
 
-    fn test(&mut self, here: &KdBox, piece: <V::Space as LineSpace>::Piece) -> Visibility {
-        let bounds = &here.bounds;
+    /// The smallest box around what a leaf holds of polygons that are not in the tree yet; `None` if there are none.
+    fn content(&self, items: &[PolygonId], leaf: &Aabb) -> Option<Aabb> {
+        let new = items.iter().filter(|&&id| !self.seen.contains(id));
+        let polygons = new.map(|&id| self.scene.polygon(id));
+        let boxes = polygons.filter(|p| p.occludes).map(|p| p.bounds());
+        let around = boxes.reduce(Aabb::union)?;
+        Some(around.intersection(leaf).unwrap_or(*leaf))
+    }
+
+    fn test(
+        &mut self,
+        bounds: &Aabb,
+        leaf: bool,
+        piece: <V::Space as LineSpace>::Piece,
+    ) -> Visibility {
         let (polygons, scene) = (&self.polygons, self.scene);
         let sides = self.view.sides();
         let hidden = |old: Occluder| {
@@ -259,6 +277,7 @@ impl<V: View> Sweeper<'_, V> {
         // Most boxes are seen, and most of those in their middle: one way down the tree.
         let middle = bounds.center_doubled().map(|c| c.div_euclid(2) as i32);
         let ray = self.view.line_through(middle.into());
+        let near = self.view.near(bounds);
         let space = self.view.space();
         let seen = match self.tree.leaf_at(space, &ray) {
             Leaf::Open => true,
@@ -270,15 +289,16 @@ impl<V: View> Sweeper<'_, V> {
             return Visibility::Partial;
         }
         if self.options.test == BoxTest::Conservative {
-            let state = self.tree.test_without_splitting(space, &piece, hidden);
+            let state = self
+                .tree
+                .test_without_splitting_at(space, &piece, near, hidden);
             // An exact test of a leaf costs less than to insert what it holds.
-            let leaf = matches!(scene.kd().nodes()[here.node as usize], KdNode::Leaf { .. });
             if state == Visibility::Invisible || !leaf {
                 LineSpace::discard(space, piece);
                 return state;
             }
         }
-        self.tree.test_region(space, piece, |_, _, old| {
+        self.tree.test_region_at(space, piece, near, |_, _, old| {
             if hidden(old) {
                 Visibility::Invisible
             } else {
@@ -316,7 +336,10 @@ impl<V: View> Sweeper<'_, V> {
             return false;
         };
         self.work.polygons += 1;
-        let seen = self.tree.insert(self.view.space(), piece, occluder);
+        let range = self.view.range(&polygon);
+        let far = |space: &V::Space, piece: &_| V::far(space, piece, occluder).min(range.far);
+        let space = self.view.space();
+        let seen = self.tree.insert_at(space, piece, occluder, range.near, far);
         if seen {
             self.work.seen += 1;
             self.polygons.push(id);

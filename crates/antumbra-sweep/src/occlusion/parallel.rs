@@ -11,7 +11,7 @@ use antumbra_scene::PolygonRef;
 
 use super::boxes::outline;
 use super::point::{EdgePlanes, frame, orient, roots};
-use super::view::{Region, Sides, View};
+use super::view::{Range, Region, Sides, View};
 
 /// All lines of one direction within a rectangle.
 #[derive(Clone, Debug)]
@@ -31,6 +31,14 @@ impl Sides for ParallelSides {
     fn away(&self, plane: &Plane) -> Sign {
         Sign::of(product(plane, self.0))
     }
+}
+
+/// Ranges count products with the direction in units of 2^9, so that they fit.
+const UNIT: u32 = 9;
+
+/// A product of a point and a direction, which is below 2^36 in magnitude, moved to be positive.
+fn positive(product: i64) -> u128 {
+    (product + (1 << 40)) as u128
 }
 
 fn product(plane: &Plane, d: [i32; 3]) -> i128 {
@@ -174,6 +182,29 @@ impl View for ParallelView {
         self.direction[axis] > 0
     }
 
+    fn near(&self, bounds: &Aabb) -> u32 {
+        (self.distance(bounds) >> UNIT) as u32
+    }
+
+    fn range(&self, polygon: &PolygonRef<'_>) -> Range {
+        let along = |p: &Point| {
+            let products = p.to_i64().into_iter().zip(self.direction);
+            products.map(|(c, d)| c * i64::from(d)).sum::<i64>()
+        };
+        let (mut near, mut far) = (i64::MAX, i64::MIN);
+        for at in polygon.corners.iter().map(along) {
+            (near, far) = (near.min(at), far.max(at));
+        }
+        Range {
+            near: (positive(near) >> UNIT) as u32,
+            far: (positive(far) >> UNIT) as u32 + 1,
+        }
+    }
+
+    fn far(_: &Space3, _: &Cone3, _: Occluder) -> u32 {
+        u32::MAX
+    }
+
     fn distance(&self, bounds: &Aabb) -> u128 {
         let (low, high) = (bounds.min.to_i64(), bounds.max.to_i64());
         let nearest: i64 = (0..3)
@@ -182,7 +213,6 @@ impl View for ParallelView {
                 (d * low[k]).min(d * high[k])
             })
             .sum();
-        // Below 2^36 in magnitude, moved to be positive.
-        (nearest + (1 << 40)) as u128
+        positive(nearest)
     }
 }

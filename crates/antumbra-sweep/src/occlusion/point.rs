@@ -13,7 +13,7 @@ use antumbra_lines::{
 use antumbra_scene::PolygonRef;
 
 use super::boxes::outline;
-use super::view::{Region, Sides, View};
+use super::view::{Range, Region, Sides, View};
 
 /// All directions from a point of the grid, or those of a convex frustum.
 #[derive(Clone, Debug)]
@@ -173,6 +173,34 @@ impl View for PointView {
 
     fn lower_first(&self, axis: usize, at: i32) -> bool {
         self.eye.to_array()[axis] < at
+    }
+
+    fn near(&self, bounds: &Aabb) -> u32 {
+        // At most 3 * 2^50.
+        (self.distance(bounds) as u64).isqrt() as u32
+    }
+
+    /// In grid steps.
+    fn range(&self, polygon: &PolygonRef<'_>) -> Range {
+        let squares = polygon.corners.iter().map(|&c| {
+            let d = sub(c, self.eye);
+            (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) as u64
+        });
+        let far = squares.max().unwrap_or(0).isqrt() as u32 + 1;
+        // Nothing of a plane is nearer than its foot; both roundings are far below 2^-40.
+        let normal = polygon.plane.normal.map(|c| c as f64);
+        let length = normal.iter().map(|c| c * c).sum::<f64>().sqrt();
+        let foot = polygon.plane.evaluate(self.eye).abs() as f64 / length;
+        let foot = (foot * (1.0 - f64::EPSILON * 8192.0)) as u32;
+        let bounds = Aabb::around(polygon.corners.iter().copied());
+        let near = bounds.map_or(0, |b| self.near(&b)).max(foot);
+        Range { near, far }
+    }
+
+    fn far(space: &Space3, piece: &Cone3, occluder: Occluder) -> u32 {
+        let corners = piece.corners.iter();
+        let far = corners.map(|c| space.farthest(occluder, &c.ray));
+        far.fold(0.0, f64::max).ceil() as u32
     }
 
     fn distance(&self, bounds: &Aabb) -> u128 {

@@ -4,6 +4,8 @@ use antumbra_kernel::{Aabb, Plane, Point, Sign};
 use antumbra_lines::{DepthSpace, LineSpace, Mark, Occluder, OcclusionTree, Slot};
 use antumbra_scene::PolygonRef;
 
+pub use crate::range::Range;
+
 /// The hyperplanes of a view's line space.
 pub(crate) type PlaneOf<V> = <<V as View>::Space as LineSpace>::Plane;
 type PieceOf<V> = <<V as View>::Space as LineSpace>::Piece;
@@ -76,6 +78,16 @@ pub trait View {
 
     /// How far away a box is; comparable between boxes of one view.
     fn distance(&self, bounds: &Aabb) -> u128;
+
+    /// How far away a box is at least, in the unit of [`View::range`].
+    fn near(&self, bounds: &Aabb) -> u32;
+
+    /// How far away a polygon is, in some unit that grows along the lines.
+    fn range(&self, polygon: &PolygonRef<'_>) -> Range;
+
+    /// How far away an occluder is at most on the lines of a piece, in the unit of [`View::range`]; the largest
+    /// number if that is not known.
+    fn far(space: &Self::Space, piece: &PieceOf<Self>, occluder: Occluder) -> u32;
 }
 
 /// Whether no corner of a box lies strictly on one side of a plane. Exact: it looks at the corner

@@ -5,8 +5,8 @@
 //! of grid points: with coordinates below 2^24 every operation errs by less than 2^-52 of at most 2^51, and the
 //! square root of what a few of them leave by far less than one step; bounds keep two steps of distance to that.
 
+use crate::range::Range;
 use antumbra_kernel::Point2;
-use antumbra_lines::Range;
 
 /// The range of a segment from a window, which may be a point.
 pub(super) fn range(window: [Point2; 2], segment: [Point2; 2]) -> Range {

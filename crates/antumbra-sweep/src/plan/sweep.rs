@@ -7,12 +7,13 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use antumbra_kernel::{Point2, Rect};
-use antumbra_lines::{DepthSpace, LineSpace, Occluder, OcclusionTree, Range};
+use antumbra_lines::{DepthSpace, LineSpace, Occluder, OcclusionTree};
 use antumbra_scene::plan::{PieceId, Plan};
 use rustc_hash::FxHashSet;
 
 use super::line::PlanLine;
 use crate::occlusion::{BoxTest, SweepOrder};
+use crate::range::Range;
 
 /// What a segment blocks in one tree.
 #[derive(Clone, Debug)]
@@ -354,7 +355,8 @@ impl<S: Source> Sweeper<'_, S> {
                 out.source.space(),
                 blocker.piece,
                 blocker.occluder,
-                blocker.range,
+                blocker.range.near,
+                |_, _| blocker.range.far,
             );
         }
         self.scratch = blockers;

@@ -3,7 +3,7 @@
 //! After [Bittner02, 5.6]. Differs in taking all leaves, so that the cells cover the view without
 //! gaps: then the only thing left to do is to match the two sides of each wall.
 
-use antumbra_lines::{Corner3, Leaf, Ray3, Space3};
+use antumbra_lines::{Corner3, Leaf, LineSpace as _, Ray3, Space3};
 use antumbra_sweep::occlusion::{Sweep, View};
 
 /// All cells; corners are numbered through.
@@ -30,13 +30,16 @@ impl Cells {
         };
         for (slot, piece) in sweep.view.roots(&sweep.tree) {
             let space = sweep.view.space();
-            sweep.tree.visit(space, slot, piece, |leaf, cone| {
-                let cell = cells.leaves.len() as u32;
-                cells.owner.extend(cone.corners.iter().map(|_| cell));
-                cells.corners.extend_from_slice(&cone.corners);
-                cells.first.push(cells.corners.len() as u32);
-                cells.leaves.push(leaf);
-            });
+            sweep
+                .tree
+                .visit_with(space, slot, piece, |space, leaf, cone| {
+                    let cell = cells.leaves.len() as u32;
+                    cells.owner.extend(cone.corners.iter().map(|_| cell));
+                    cells.corners.extend_from_slice(&cone.corners);
+                    cells.first.push(cells.corners.len() as u32);
+                    cells.leaves.push(leaf);
+                    space.discard(cone);
+                });
         }
         cells
     }

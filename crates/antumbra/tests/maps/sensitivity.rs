@@ -50,7 +50,7 @@ fn replicas_beyond_the_walls_of_a_room_add_little_work() {
             assert!(seen > 4.0 * std::f64::consts::PI - 1e-9, "a closed room");
             (map.faces().len(), *map.work())
         };
-        // What a sweep spends its time on; tests of boxes are many, but cheap.
+        // What a sweep spends its time on.
         let tests = |w: &MapWork| w.sweep.nodes_tested;
         let inserts = |w: &MapWork| w.sweep.polygons + w.tree_nodes as u64;
         let (faces, alone) = map(1);
@@ -59,12 +59,7 @@ fn replicas_beyond_the_walls_of_a_room_add_little_work() {
             assert_eq!(faces, among);
             let seen = format!("{order:?}, {n}: {work:?}, alone {alone:?}");
             assert!(10 * inserts(&work) < 11 * inserts(&alone), "{seen}");
-            // The number of tests grows as the kD-tree gets deeper: 24 copies are worth half of one.
-            assert!(2 * tests(&work) < 3 * tests(&alone), "{seen}");
-            if n == 3 {
-                let sum = |w: &MapWork| inserts(w) + tests(w);
-                assert!(10 * sum(&work) < 11 * sum(&alone), "{seen}");
-            }
+            assert!(10 * tests(&work) < 11 * tests(&alone), "{seen}");
             let SweepWork {
                 leaves,
                 leaves_opened,
