@@ -1,5 +1,6 @@
 //! Visibility maps against big integers, rays, and each other.
 
+mod drawing;
 mod oracle;
 mod real;
 mod sensitivity;
