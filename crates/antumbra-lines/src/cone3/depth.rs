@@ -25,12 +25,45 @@ pub struct Nearness {
     pub scale: i128,
 }
 
+/// The occluders of a space.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Occluders {
+    /// What filters read, apart from the rest.
+    rounded: Vec<Rounded>,
+    exact: Vec<(Nearness, u32)>,
+}
+
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Entry {
+struct Rounded {
     row: [f64; 3],
     scale: f64,
-    exact: Nearness,
-    key: u32,
+}
+
+impl Occluders {
+    pub(super) fn len(&self) -> usize {
+        self.exact.len()
+    }
+
+    pub(super) fn truncate(&mut self, len: usize) {
+        self.rounded.truncate(len);
+        self.exact.truncate(len);
+    }
+
+    fn rounded(&self, occluder: Occluder) -> &Rounded {
+        &self.rounded[occluder.0 as usize]
+    }
+
+    fn key(&self, occluder: Occluder) -> u32 {
+        self.exact[occluder.0 as usize].1
+    }
+
+    /// The row of the common line of two of them.
+    fn common_row(&self, a: Occluder, b: Occluder) -> [I256; 3] {
+        let [a, b] = [a, b].map(|o| &self.exact[o.0 as usize].0);
+        std::array::from_fn(|k| {
+            I256::product_i128(b.scale, a.row[k]) - I256::product_i128(a.scale, b.row[k])
+        })
+    }
 }
 
 /// 2^-48, see the proof above.
@@ -43,13 +76,13 @@ impl Space3 {
     /// 2^159 in magnitude.
     pub fn occluder(&mut self, nearness: Nearness, key: u32) -> Occluder {
         debug_assert!(nearness.scale > 0);
-        self.occluders.push(Entry {
+        let occluder = Occluder(self.occluders.len() as u32);
+        self.occluders.rounded.push(Rounded {
             row: nearness.row.map(|c| c as f64),
             scale: nearness.scale as f64,
-            exact: nearness,
-            key,
         });
-        Occluder(self.occluders.len() as u32 - 1)
+        self.occluders.exact.push((nearness, key));
+        occluder
     }
 
     /// The key of an occluder.
@@ -58,7 +91,7 @@ impl Space3 {
     /// If there is no such occluder.
     #[must_use]
     pub fn key(&self, occluder: Occluder) -> u32 {
-        self.occluders[occluder.0 as usize].key
+        self.occluders.key(occluder)
     }
 
     /// The sign of how much nearer `a` is than `b` along a ray: zero where their planes meet.
@@ -68,9 +101,9 @@ impl Space3 {
     /// If there is no such occluder.
     #[must_use]
     pub fn nearer(&self, a: Occluder, b: Occluder, ray: &Ray3) -> Sign {
-        let (a, b) = (&self.occluders[a.0 as usize], &self.occluders[b.0 as usize]);
-        filtered(a, b, &ray.rounded).unwrap_or_else(|| {
-            let row = Row::Wide(common_row(a, b));
+        let occluders = &self.occluders;
+        filtered(occluders.rounded(a), occluders.rounded(b), &ray.rounded).unwrap_or_else(|| {
+            let row = Row::Wide(occluders.common_row(a, b));
             sign(&row, &self.exact(ray))
         })
     }
@@ -80,7 +113,7 @@ impl Space3 {
     /// # Panics
     /// If there is no such occluder.
     pub fn common_plane(&mut self, a: Occluder, b: Occluder) -> Plane3 {
-        let row = common_row(&self.occluders[a.0 as usize], &self.occluders[b.0 as usize]);
+        let row = self.occluders.common_row(a, b);
         self.wide_plane(row)
     }
 
@@ -90,7 +123,7 @@ impl Space3 {
     /// If there is no such occluder.
     #[must_use]
     pub fn farthest(&self, occluder: Occluder, ray: &Ray3) -> f64 {
-        let (entry, r) = (&self.occluders[occluder.0 as usize], ray.rounded);
+        let (entry, r) = (self.occluders.rounded(occluder), ray.rounded);
         let p: [f64; 3] = std::array::from_fn(|k| entry.row[k] * r[k]);
         let size = p[0].abs() + p[1].abs() + p[2].abs();
         // A lower bound of the product, by the proof above.
@@ -109,13 +142,13 @@ impl Space3 {
     /// If there is no such occluder.
     #[must_use]
     pub fn distance(&self, occluder: Occluder, ray: [f64; 3]) -> f64 {
-        let entry = &self.occluders[occluder.0 as usize];
+        let entry = self.occluders.rounded(occluder);
         entry.scale / (0..3).map(|k| entry.row[k] * ray[k]).sum::<f64>()
     }
 }
 
 #[inline]
-fn filtered(a: &Entry, b: &Entry, r: &[f64; 3]) -> Option<Sign> {
+fn filtered(a: &Rounded, b: &Rounded, r: &[f64; 3]) -> Option<Sign> {
     let p: [f64; 3] = std::array::from_fn(|k| a.row[k] * r[k]);
     let q: [f64; 3] = std::array::from_fn(|k| b.row[k] * r[k]);
     let value = b.scale * (p[0] + p[1] + p[2]) - a.scale * (q[0] + q[1] + q[2]);
@@ -130,37 +163,30 @@ fn filtered(a: &Entry, b: &Entry, r: &[f64; 3]) -> Option<Sign> {
     }
 }
 
-fn common_row(a: &Entry, b: &Entry) -> [I256; 3] {
-    std::array::from_fn(|k| {
-        I256::product_i128(b.exact.scale, a.exact.row[k])
-            - I256::product_i128(a.exact.scale, b.exact.row[k])
-    })
-}
-
 impl DepthSpace for Space3 {
     fn order(&mut self, piece: &Cone3, new: Occluder, old: Occluder) -> Order<Plane3> {
-        let (a, b) = (
-            self.occluders[new.0 as usize],
-            self.occluders[old.0 as usize],
-        );
+        let [a, b] = [new, old].map(|o| *self.occluders.rounded(o));
         let mut common: Option<Row> = None;
         let mut found = [false; 3];
         for corner in &piece.corners {
             let sign = filtered(&a, &b, &corner.ray.rounded).unwrap_or_else(|| {
                 self.exact_signs += 1;
-                let row = common.get_or_insert_with(|| Row::Wide(common_row(&a, &b)));
+                let row =
+                    common.get_or_insert_with(|| Row::Wide(self.occluders.common_row(new, old)));
                 sign(row, &self.exact(&corner.ray))
             });
             found[(sign.to_i8() + 1) as usize] = true;
         }
         match found {
             [true, _, true] => {
-                let row = common_row(&a, &b);
+                let row = self.occluders.common_row(new, old);
                 Order::Crossing(self.wide_plane(row), Half::Positive)
             }
             [true, _, false] => Order::Behind,
             [false, _, true] => Order::InFront,
-            [false, _, false] if a.key < b.key => Order::InFront,
+            [false, _, false] if self.occluders.key(new) < self.occluders.key(old) => {
+                Order::InFront
+            }
             [false, _, false] => Order::Behind,
         }
     }

@@ -81,7 +81,7 @@ pub struct Space3 {
     filters: Vec<[f64; 3]>,
     rows: Vec<Row>,
     given: Vec<[i64; 3]>,
-    occluders: Vec<depth::Entry>,
+    occluders: depth::Occluders,
     /// Scratch: the signs of the corners of the cone being cut.
     signs: Vec<Sign>,
     spare: Vec<Vec<Corner3>>,

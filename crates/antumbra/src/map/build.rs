@@ -338,13 +338,10 @@ fn name_vertices<V: View<Space = Space3>>(
     space: &Space3,
     seen: &Seen,
 ) {
-    let occluder_of: std::collections::HashMap<PolygonId, Occluder> = classifier
-        .sweep
-        .polygons
-        .iter()
-        .zip(0..)
-        .map(|(&id, i)| (id, Occluder(i)))
-        .collect();
+    let mut occluder_of = vec![None; classifier.scene.polygon_count()];
+    for (&id, i) in classifier.sweep.polygons.iter().zip(0..) {
+        occluder_of[id.0 as usize] = Some(Occluder(i));
+    }
     let rays: Vec<&Ray3> = map
         .vertices
         .iter()
@@ -360,7 +357,7 @@ fn name_vertices<V: View<Space = Space3>>(
                 }
                 for element in [edge.near, edge.far].into_iter().flatten() {
                     let Some(k) = element.edge else { continue };
-                    let Some(&of) = occluder_of.get(&element.polygon) else {
+                    let Some(of) = occluder_of[element.polygon.0 as usize] else {
                         continue;
                     };
                     if let Some(corner) = classifier.corner(space, of, k, rays[v as usize]) {

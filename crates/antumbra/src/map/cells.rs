@@ -6,6 +6,9 @@
 use antumbra_lines::{Corner3, Leaf, LineSpace as _, Ray3, Space3};
 use antumbra_sweep::occlusion::{Sweep, View};
 
+/// Walls from here on are those of the view's frame.
+const FRAME: u32 = u32::MAX - 64;
+
 /// All cells; corners are numbered through.
 pub(super) struct Cells {
     pub(super) corners: Vec<Corner3>,
@@ -79,13 +82,32 @@ impl Cells {
 
     /// All corners by the wall of their facets, those on its negative side first.
     pub(super) fn by_wall(&self) -> Vec<u32> {
-        let mut keys: Vec<(u64, u32)> = self
-            .corners
-            .iter()
-            .zip(0..)
-            .map(|(c, i)| (u64::from(c.wall.0) << 1 | c.side.index() as u64, i))
-            .collect();
-        keys.sort_unstable();
-        keys.into_iter().map(|(_, i)| i).collect()
+        // Walls are numbers of nodes, and a few of the view's frame, which count down from the largest number: they
+        // are sorted by counting.
+        let nodes = self.corners.iter().map(|c| c.wall.0).filter(|&w| w < FRAME);
+        let nodes = nodes.max().map_or(0, |w| w + 1);
+        let key = |c: &Corner3| {
+            let wall = c.wall.0;
+            let place = if wall < FRAME {
+                wall
+            } else {
+                nodes + (wall - FRAME)
+            };
+            2 * place as usize + c.side.index()
+        };
+        let mut starts = vec![0_u32; 2 * (nodes + (u32::MAX - FRAME)) as usize + 3];
+        self.corners.iter().for_each(|c| starts[key(c) + 1] += 1);
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += *start;
+            *start = sum;
+        }
+        let mut order = vec![0; self.corners.len()];
+        for (corner, i) in self.corners.iter().zip(0..) {
+            let start = &mut starts[key(corner)];
+            order[*start as usize] = i;
+            *start += 1;
+        }
+        order
     }
 }

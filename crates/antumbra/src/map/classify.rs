@@ -110,7 +110,9 @@ impl<V: View<Space = Space3>> Classifier<'_, V> {
         let ends = [segment.from, segment.to].map(|c| self.cells.ray(c));
         match (leaf(0), leaf(1)) {
             (a, b) if a == b => Label::plain(EdgeClass::Bsp),
-            (Leaf::Blocked(a), Leaf::Blocked(b)) => self.between(space, a, b, ends),
+            (Leaf::Blocked(a), Leaf::Blocked(b)) => {
+                self.between(space, [a, b], segment.nearer, ends)
+            }
             (Leaf::Blocked(a), _) => self.silhouette(space, a, ends, false),
             (_, Leaf::Blocked(b)) => self.silhouette(space, b, ends, true),
             _ => Label::plain(EdgeClass::Frame),
@@ -126,8 +128,13 @@ impl<V: View<Space = Space3>> Classifier<'_, V> {
         }
     }
 
-    fn between(&self, space: &Space3, a: Occluder, b: Occluder, ends: [&Ray3; 2]) -> Label {
-        let [from, to] = ends.map(|ray| space.nearer(a, b, ray));
+    fn between(
+        &self,
+        space: &Space3,
+        [a, b]: [Occluder; 2],
+        [from, to]: [Sign; 2],
+        ends: [&Ray3; 2],
+    ) -> Label {
         let sign = if from.is_zero() { to } else { from };
         if sign == Sign::Zero {
             return self.contact(space, a, b, ends);

@@ -6,6 +6,7 @@
 
 use std::cmp::Ordering;
 
+use antumbra_kernel::Sign;
 use antumbra_lines::{Half, Leaf, LineSpace as _, Ray3, Space3, Wall};
 
 use super::cells::Cells;
@@ -21,6 +22,9 @@ pub(super) struct Segment {
     /// The cell whose border runs from `from` to `to`, and the one on the other side.
     pub(super) cells: [u32; 2],
     pub(super) wall: Wall,
+    /// Whether the polygon of the first cell is nearer than that of the second, at both corners; zero where one of
+    /// the cells has none.
+    pub(super) nearer: [Sign; 2],
     /// A corner whose facet lies on the wall, positive side first, for its hyperplane.
     facet: u32,
 }
@@ -66,8 +70,9 @@ impl Walls {
     /// two edges in one hyperplane that cross there, one polygon on each side: rare, but no vertex
     /// says so.
     pub(super) fn split_crossings(&mut self, cells: &mut Cells, space: &mut Space3) {
-        let crossings: Vec<(usize, Ray3)> = (0..self.segments.len())
-            .filter_map(|i| Some((i, crossing(&self.segments[i], cells, space)?)))
+        let segments = self.segments.iter_mut().enumerate();
+        let crossings: Vec<(usize, Ray3)> = segments
+            .filter_map(|(i, segment)| Some((i, crossing(segment, cells, space)?)))
             .collect();
         if crossings.is_empty() {
             return;
@@ -82,9 +87,12 @@ impl Walls {
                 let middle = cells.add_ray(ray);
                 self.vertex.push(self.rays.len() as u32);
                 self.rays.push(middle);
-                segments[first[i] as usize].to = middle;
+                let [from, to] = segment.nearer;
+                let before = &mut segments[first[i] as usize];
+                (before.to, before.nearer) = (middle, [from, Sign::Zero]);
                 segments.push(Segment {
                     from: middle,
+                    nearer: [Sign::Zero, to],
                     ..*segment
                 });
             }
@@ -99,8 +107,8 @@ impl Walls {
     }
 }
 
-/// Where the polygons of a segment's two cells change places strictly between its ends.
-fn crossing(segment: &Segment, cells: &Cells, space: &mut Space3) -> Option<Ray3> {
+/// Finds which of a segment's two polygons is nearer at its ends, and where they change places strictly between.
+fn crossing(segment: &mut Segment, cells: &Cells, space: &mut Space3) -> Option<Ray3> {
     if segment.cells[1] == OUTSIDE {
         return None;
     }
@@ -112,6 +120,7 @@ fn crossing(segment: &Segment, cells: &Cells, space: &mut Space3) -> Option<Ray3
         return None;
     }
     let [from, to] = [segment.from, segment.to].map(|c| space.nearer(a, b, cells.ray(c)));
+    segment.nearer = [from, to];
     if !from.times(to).is_negative() {
         return None;
     }
@@ -243,6 +252,7 @@ impl Matcher<'_> {
             to,
             cells: facets.map(|f| self.cells.owner[f as usize]),
             wall,
+            nearer: [Sign::Zero; 2],
             facet: facets[0],
         });
     }
@@ -255,6 +265,7 @@ impl Matcher<'_> {
             to: self.cells.next(facet),
             cells: [self.cells.owner[facet as usize], OUTSIDE],
             wall,
+            nearer: [Sign::Zero; 2],
             facet,
         });
     }
