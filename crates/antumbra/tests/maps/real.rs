@@ -20,9 +20,9 @@ fn views() -> usize {
     if long() { 20 } else { 1 }
 }
 
-/// Exact directions a view; 20 views make 100,000.
+/// At most so many exact directions a view, and half of them where the map has as many; 20 views make 100,000.
 fn exact() -> usize {
-    if long() { 5_000 } else { 2_000 }
+    if long() { 10_000 } else { 2_000 }
 }
 
 fn rays() -> usize {
