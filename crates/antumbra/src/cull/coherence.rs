@@ -7,6 +7,7 @@ use antumbra_scene::{BoxFace, KdBox, KdTree, Ropes};
 
 use super::hierarchy::{Bounds, Hierarchy};
 use super::options::Probability;
+use super::sweep::Pass;
 
 /// What is known of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +22,10 @@ pub(super) enum State {
     Passed,
 }
 
+/// So many frames a node waits after a test in vain. 2 to 8 save the same at walking speed; 64 saves 3 %
+/// less where much changes, 1 tests in vain again.
+const VAIN: u8 = 4;
+
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Memory {
     /// The frame of the state.
@@ -32,6 +37,8 @@ pub(super) struct Memory {
     pub propagated: bool,
     /// Whether its own test was made in this frame.
     pub tested: bool,
+    /// The frame of the last first look at which an inner node was open, or as good as open.
+    pub opened: u32,
     /// For how many frames its own test is not worth making: it failed although all children are
     /// hidden, and would be made again and again.
     pub stubborn: u8,
@@ -44,25 +51,48 @@ impl Memory {
         hidden_children: 0,
         propagated: false,
         tested: false,
+        opened: 0,
         stubborn: 0,
     };
 }
 
 impl Memory {
+    /// What stays known of a node that a look has found in some state. The second look leaves alone
+    /// what the next frame's first one needs.
+    pub(super) fn carried(self, state: State, pass: Pass, looked: u32, frame: u32) -> Self {
+        let open = match state {
+            State::Visible => true,
+            // One that was passed by is as it was.
+            State::Passed => self.opened == looked,
+            State::Outside | State::Invisible => false,
+        };
+        match pass {
+            Pass::Second => self,
+            Pass::First if open => Self {
+                opened: frame,
+                ..self
+            },
+            Pass::First => Self {
+                opened: 0,
+                stubborn: 0,
+                ..self
+            },
+        }
+    }
+
     /// All children are hidden, so the node is. In the next frame it is tested itself, and hides them at
     /// once: unless it was, in vain.
-    pub(super) fn close(&mut self) {
+    pub(super) fn close(&mut self, pass: Pass) {
         self.state = State::Invisible;
+        if pass == Pass::Second {
+            return;
+        }
         self.stubborn = if self.tested {
-            16
+            VAIN
         } else {
             self.stubborn.saturating_sub(1)
         };
-    }
-
-    /// Whether an inner node was open in the frame before, or is as good as open.
-    pub(super) fn was_open(&self, frame: u32) -> bool {
-        self.frame + 1 == frame && (self.state == State::Visible || self.stubborn > 0)
+        self.opened = if self.stubborn > 0 { self.frame } else { 0 };
     }
 }
 

@@ -130,6 +130,10 @@ pub struct Culler {
     /// Objects that do not occlude now.
     open: Vec<bool>,
     memory: Vec<Memory>,
+    /// The number of the first look at the last frame; none is `u32::MAX`.
+    first_look: u32,
+    /// The first look whose open nodes stay open.
+    looked: u32,
     seen_leaves: Vec<u32>,
     stack: Vec<(u32, u32)>,
     propagation: Option<Propagation>,
@@ -203,6 +207,8 @@ impl Culler {
             chosen: Vec::with_capacity(count),
             open: vec![false; objects],
             memory: vec![Memory::NEW; hierarchy.nodes.len()],
+            first_look: u32::MAX,
+            looked: u32::MAX,
             seen_leaves: Vec::with_capacity(hierarchy.nodes.len()),
             stack: Vec::with_capacity(2 * scene.kd().depth() + 8),
             propagation: coherence.propagation.map(|_| Propagation::new(scene.kd())),

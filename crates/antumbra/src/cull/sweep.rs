@@ -13,7 +13,7 @@ use super::{Camera, CullWork, Culler, Visible};
 
 /// Which look at a frame it is. Each has a number of its own among the frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Pass {
+pub(super) enum Pass {
     First,
     /// Asks only for what the first one has seen.
     Second,
@@ -38,7 +38,13 @@ impl Culler {
     pub fn cull(&mut self, camera: &Camera) -> &Visible {
         self.visible.objects.clear();
         self.visible.work = CullWork::default();
+        if self.visible.frame >= u32::MAX - 2 {
+            self.forget();
+        }
+        let before = self.first_look;
         self.next_frame();
+        self.first_look = self.visible.frame;
+        self.looked = before;
         let eye = self.grid.to_grid_f64(camera.eye());
         let near = snap_eye(eye);
         let occluding = near.is_some() && self.options.method != Method::Frustum;
@@ -46,6 +52,7 @@ impl Culler {
         self.pass(camera, eye, occluding, Pass::First);
         if self.options.twice && occluding && self.options.selection.sweeps() {
             // Both are right, so what one of them hides is hidden.
+            self.looked = self.first_look;
             self.next_frame();
             self.visible.objects.clear();
             self.pass(camera, eye, occluding, Pass::Second);
@@ -71,14 +78,18 @@ impl Culler {
         self.visible.work.tree_visits += self.tree.visits;
     }
 
+    /// Starts again as a new culler does, before the numbers of frames run out. Never between the two
+    /// looks at a frame: the second one asks by number for what the first one saw.
+    fn forget(&mut self) {
+        self.visible.frames.fill(0);
+        self.tried.fill(0);
+        self.memory.fill(Memory::NEW);
+        self.visible.frame = 0;
+        self.first_look = u32::MAX;
+    }
+
     fn next_frame(&mut self) {
         let visible = &mut self.visible;
-        if visible.frame >= u32::MAX - 1 {
-            visible.frames.fill(0);
-            self.tried.fill(0);
-            self.memory.fill(Memory::NEW);
-            visible.frame = 0;
-        }
         // The first frame is number 2: what was never seen was not seen in the frame before.
         visible.frame = visible.frame.max(1) + 1;
         self.seen_leaves.clear();
@@ -201,23 +212,18 @@ impl Culler {
             let (children, axis, at) = (node.children, node.axis as usize, node.at);
             let tests = self.visible.work.node_tests;
             let state = self.classify(number, eye, (occluding, pass), minimum, &mut entry);
-            let before = std::mem::replace(
-                &mut self.memory[number as usize],
-                Memory {
-                    frame: self.visible.frame,
-                    state: state.0,
-                    hidden_children: 0,
-                    propagated: state.1,
-                    tested: self.visible.work.node_tests > tests,
-                    stubborn: 0,
-                },
-            );
-            if state.0 == State::Visible {
-                self.memory[number as usize].stubborn = before.stubborn;
-            }
+            let before = self.memory[number as usize];
+            self.memory[number as usize] = Memory {
+                frame: self.visible.frame,
+                state: state.0,
+                hidden_children: 0,
+                propagated: state.1,
+                tested: self.visible.work.node_tests > tests,
+                ..before.carried(state.0, pass, self.looked, self.visible.frame)
+            };
             match (state.0, children) {
                 (State::Passed, _) => {}
-                (State::Outside | State::Invisible, _) => self.pull_up(number),
+                (State::Outside | State::Invisible, _) => self.pull_up(number, pass),
                 (State::Visible, Some([lower, upper])) => {
                     let (near, far) = if eye[axis] < at {
                         (lower, upper)
@@ -267,10 +273,6 @@ impl Culler {
                 return (State::Passed, false);
             }
         }
-        if self.options.coherence.updating && node.children.is_some() && before.was_open(frame) {
-            self.visible.work.nodes_skipped += 1;
-            return (State::Visible, false);
-        }
         // States of cells are needed where they are passed on.
         let bounds = if propagating {
             Bounds::of(&node.kd.bounds)
@@ -278,6 +280,17 @@ impl Culler {
             node.bounds
         };
         let block = bounds.seen_from(eye);
+        if self.options.coherence.updating
+            && node.children.is_some()
+            && before.opened == self.looked
+        {
+            // A turning head would find it out by all the nodes below.
+            if self.tree.is_outside(&block) {
+                return (State::Outside, false);
+            }
+            self.visible.work.nodes_skipped += 1;
+            return (State::Visible, false);
+        }
         if !occluding || node.cost < minimum {
             let outside = self.tree.is_outside(&block);
             let state = if outside {
@@ -419,7 +432,7 @@ impl Culler {
     }
 
     /// Tells the nodes above that one is hidden: with all its children a node is hidden, too.
-    fn pull_up(&mut self, mut number: u32) {
+    fn pull_up(&mut self, mut number: u32, pass: Pass) {
         while number != 0 {
             number = self.hierarchy.nodes[number as usize].parent;
             let memory = &mut self.memory[number as usize];
@@ -427,7 +440,7 @@ impl Culler {
             if memory.hidden_children < 2 {
                 return;
             }
-            memory.close();
+            memory.close(pass);
         }
     }
 
