@@ -1,0 +1,238 @@
+//! The occlusion tree of a frame, in floats: built from occluders, asked about boxes and polygons.
+//!
+//! After [Bittner02, 4.7 to 4.10] and [BHS98, 5 and 6]. The planes of the tree go through the eye and
+//! a line of the scene, *exactly*; doubles only locate things on their sides, and what they cannot
+//! locate counts as [`super::bound`] says. A line has one number wherever polygons meet along it, so
+//! neighbors share the plane and leave no gap; a corner on the line of a node is found exactly.
+//!
+//! [`insert`] builds it, [`boxes`] and [`pieces`] ask it, both by what [`place`] says.
+
+mod boxes;
+mod insert;
+mod pieces;
+mod place;
+
+use super::bound::{MAX_DEPTH, TAU, dot, plane_through_eye, size, sub};
+use super::fragment::{Block, CORNER, MAX_CORNERS, Vertex};
+
+use boxes::Axis;
+
+/// The line of a plane of the frustum.
+const NO_LINE: u32 = u32::MAX;
+/// The slot of the root.
+pub(super) const ROOT: u32 = NO_LINE;
+/// Children above this bit are leaves.
+const LEAF: u32 = 1 << 31;
+const OPEN: u32 = u32::MAX;
+const OUTSIDE: u32 = u32::MAX - 1;
+
+/// The most corners of an occluder.
+pub(super) const MAX_OCCLUDER_CORNERS: usize = 24;
+
+#[derive(Clone, Copy)]
+struct Node {
+    plane: [f64; 3],
+    /// Outside, inside.
+    children: [u32; 2],
+}
+
+/// What only insertion needs to know of a node.
+#[derive(Clone, Copy)]
+struct Origin {
+    ends: [[f64; 3]; 2],
+    line: u32,
+    /// The node above and the side on which this one hangs, times two plus side; none for the root.
+    parent: u32,
+}
+
+/// A convex polygon: corners on the grid, the lines of its edges, its plane.
+#[derive(Clone, Copy)]
+pub(super) struct Face<'a> {
+    pub corners: &'a [[f64; 3]],
+    /// One for each edge, from corner `i` to the next one.
+    pub lines: &'a [u32],
+    /// Of length one; the corners turn counter-clockwise about it.
+    pub normal: [f64; 3],
+    /// The exact normal in two parts, see [`super::bound::on_plane`].
+    pub parts: [[f64; 3]; 2],
+}
+
+/// An occluder in the tree, relative to the eye.
+#[derive(Clone, Copy)]
+struct Blocker {
+    /// `normal . x = offset > 0` on the plane.
+    normal: [f64; 3],
+    offset: f64,
+    zone: f64,
+    parts: [[f64; 3]; 2],
+    first: u32,
+    count: u32,
+    /// 1 if the corners turn so that products of neighbors point inward, else -1.
+    facing: f64,
+    /// Around the eye and the corners.
+    low: [f64; 3],
+    high: [f64; 3],
+    /// Where its axes start, once they were asked for.
+    axes: u32,
+}
+
+pub(super) struct Tree {
+    eye: [f64; 3],
+    nodes: Vec<Node>,
+    origins: Vec<Origin>,
+    root: u32,
+    /// Nodes of the frustum at the start.
+    frame: u32,
+    blockers: Vec<Blocker>,
+    /// Corners of the blockers, relative to the eye.
+    corners: Vec<[f64; 3]>,
+    axes: Vec<Axis>,
+    /// A stack of fragments.
+    fragments: Vec<Vertex>,
+    top: usize,
+    signs: [i8; MAX_CORNERS],
+    sides: [f64; MAX_CORNERS],
+    /// How often each blocker hid something.
+    pub hits: Vec<u32>,
+    /// Fragments that insertion has taken past a node.
+    pub visits: u64,
+    /// Nodes visited by tests.
+    pub steps: u64,
+    /// Whether edges that lie on planes of the way are left out (MOBSP), or come again (OBSP).
+    marking: bool,
+    /// The planes of the frustum, pointing inward, and the one across the eye.
+    frustum: [[f64; 3]; 5],
+}
+
+impl Tree {
+    /// An empty tree with all the memory it will ever use.
+    pub(super) fn new(max_nodes: usize, max_blockers: usize) -> Self {
+        Self {
+            eye: [0.0; 3],
+            nodes: Vec::with_capacity(max_nodes),
+            origins: Vec::with_capacity(max_nodes),
+            root: OPEN,
+            frame: 0,
+            blockers: Vec::with_capacity(max_blockers),
+            corners: Vec::with_capacity(max_blockers * 8),
+            axes: Vec::with_capacity(max_blockers * 30),
+            fragments: vec![Vertex::NONE; 2 * (MAX_DEPTH + MAX_OCCLUDER_CORNERS + 4) * MAX_CORNERS],
+            top: 0,
+            signs: [0; MAX_CORNERS],
+            sides: [0.0; MAX_CORNERS],
+            hits: Vec::with_capacity(max_blockers),
+            steps: 0,
+            visits: 0,
+            marking: true,
+            frustum: [[0.0; 3]; 5],
+        }
+    }
+
+    /// Empties the tree, for an eye and a frustum: the planes of neighboring edges point inward. A
+    /// framed tree calls invisible what is outside.
+    pub(super) fn start(
+        &mut self,
+        eye: [f64; 3],
+        edges: &[[f64; 3]; 4],
+        framed: bool,
+        marking: bool,
+    ) {
+        self.eye = eye;
+        self.marking = marking;
+        self.nodes.clear();
+        self.origins.clear();
+        self.blockers.clear();
+        self.corners.clear();
+        self.axes.clear();
+        self.hits.clear();
+        self.root = OPEN;
+        self.turn(edges);
+        let mut parent = ROOT;
+        for i in 0..if framed { 4 } else { 0 } {
+            let ends = [edges[i], edges[(i + 1) % 4]];
+            let node = self.push(parent, self.frustum[i], ends, NO_LINE, OUTSIDE);
+            parent = 2 * node + 1;
+        }
+        self.frame = self.nodes.len() as u32;
+    }
+
+    /// Changes the frustum of a tree that is not framed, and starts to count anew.
+    pub(super) fn turn(&mut self, edges: &[[f64; 3]; 4]) {
+        // The four sides, and what is behind the eye: straight ahead is the sum of the edges.
+        let ahead: [f64; 3] = std::array::from_fn(|k| edges.iter().map(|e| e[k]).sum());
+        let ahead = ahead.map(|c| c / size(ahead));
+        self.frustum = std::array::from_fn(|i| match i {
+            4 => ahead,
+            _ => plane_through_eye(edges[i], edges[(i + 1) % 4]),
+        });
+        self.hits.fill(0);
+        self.steps = 0;
+        self.visits = 0;
+    }
+
+    /// Whether a box is surely outside the frustum.
+    pub(super) fn is_outside(&self, block: &Block) -> bool {
+        let zone = block.zone();
+        let beyond =
+            |plane: &[f64; 3]| dot(*plane, block.center) + block.reach(*plane) + zone < 0.0;
+        self.frustum.iter().any(beyond)
+    }
+
+    pub(super) fn node_count(&self) -> usize {
+        self.nodes.len() - self.frame as usize
+    }
+
+    /// Hangs a node in a slot (the root, or node times two plus side).
+    fn push(
+        &mut self,
+        slot: u32,
+        plane: [f64; 3],
+        ends: [[f64; 3]; 2],
+        line: u32,
+        outer: u32,
+    ) -> u32 {
+        let node = self.nodes.len() as u32;
+        self.nodes.push(Node {
+            plane,
+            children: [outer, OPEN],
+        });
+        self.origins.push(Origin {
+            ends,
+            line,
+            parent: slot,
+        });
+        self.put(slot, node);
+        node
+    }
+
+    fn put(&mut self, slot: u32, child: u32) {
+        if slot == NO_LINE {
+            self.root = child;
+        } else {
+            self.nodes[slot as usize / 2].children[slot as usize % 2] = child;
+        }
+    }
+
+    fn child(&self, slot: u32) -> u32 {
+        if slot == NO_LINE {
+            self.root
+        } else {
+            self.nodes[slot as usize / 2].children[slot as usize % 2]
+        }
+    }
+
+    /// Loads a polygon as the first fragment.
+    fn load(&mut self, face: &Face<'_>) {
+        let eye = self.eye;
+        self.top = face.corners.len();
+        for (i, (v, &c)) in self.fragments.iter_mut().zip(face.corners).enumerate() {
+            let p = sub(c, eye);
+            *v = Vertex {
+                p,
+                zone: TAU * size(p),
+                edge: i as u32,
+                from: CORNER,
+            };
+        }
+    }
+}
