@@ -127,6 +127,8 @@ pub struct Culler {
     planted: Vec<u32>,
     /// Occluders chosen for a frame, with a key.
     chosen: Vec<(f64, u32)>,
+    /// Occluders of a leaf, with their distance.
+    near: Vec<(f64, u32)>,
     /// Objects that do not occlude now.
     open: Vec<bool>,
     memory: Vec<Memory>,
@@ -189,6 +191,8 @@ impl Culler {
         }
         let count = occluders.faces.len();
         let objects = scene.objects().len();
+        let in_leaf = |node: &hierarchy::HierarchyNode| node.occluders.1 - node.occluders.0;
+        let most_in_a_leaf = hierarchy.nodes.iter().map(in_leaf).max().unwrap_or(0) as usize;
         let most = options.max_occluders.min(count);
         let coherence = options.coherence;
         Self {
@@ -205,6 +209,7 @@ impl Culler {
             tried: vec![0; count],
             planted: Vec::with_capacity(most),
             chosen: Vec::with_capacity(count),
+            near: Vec::with_capacity(most_in_a_leaf),
             open: vec![false; objects],
             memory: vec![Memory::NEW; hierarchy.nodes.len()],
             first_look: u32::MAX,

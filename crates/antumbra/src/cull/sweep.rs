@@ -146,6 +146,7 @@ impl Culler {
     /// Chooses the occluders that hid something in the frame before.
     fn choose_again(&mut self) {
         self.chosen.clear();
+        self.tree.spread_hits();
         let hits = self.tree.hits.iter().zip(&self.planted);
         self.chosen
             .extend(hits.filter(|(hits, _)| **hits > 0).map(|(_, &o)| (0.0, o)));
@@ -409,9 +410,10 @@ impl Culler {
         false
     }
 
-    /// Inserts the occluders of a leaf that look large enough and are not hidden.
+    /// Inserts the occluders of a leaf that look large enough and are not hidden, the nearest first.
     fn insert_of_leaf(&mut self, occluders: (u32, u32), bounds: Bounds, eye: [f64; 3]) {
         let smallest = self.options.min_angle * bounds.squared_distance(eye);
+        self.near.clear();
         for i in occluders.0..occluders.1 {
             let occluder = self.hierarchy.occluders[i as usize];
             // The largest come first. Their part in this leaf is no nearer than the leaf.
@@ -424,6 +426,13 @@ impl Culler {
                 continue;
             }
             self.tried[occluder as usize] = self.visible.frame;
+            let distance = self.occluders.bounds[occluder as usize].squared_distance(eye);
+            self.near.push((distance, occluder));
+        }
+        self.near
+            .sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for i in 0..self.near.len() {
+            let occluder = self.near[i].1;
             let block = self.occluders.bounds[occluder as usize].seen_from(eye);
             if !self.tree.hides_box(&block, LeafTest::Exact, &mut { ROOT }) {
                 self.insert(occluder);

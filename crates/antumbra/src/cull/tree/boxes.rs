@@ -56,6 +56,11 @@ impl Tree {
                 } else if d < -reach {
                     child = children[0];
                 } else {
+                    if self.shells[child as usize].hides(block) {
+                        self.used[child as usize] = true;
+                        child = OUTSIDE;
+                        break;
+                    }
                     child = children[1];
                     let other = children[0];
                     if other == OPEN {

@@ -11,7 +11,7 @@
 
 use super::super::bound::{MAX_DEPTH, dot, plane_through_eye};
 use super::super::fragment::WALL;
-use super::{Blocker, Face, LEAF, NO_LINE, OPEN, OUTSIDE, Origin, Tree};
+use super::{Blocker, Face, LEAF, NO_LINE, OPEN, OUTSIDE, Origin, Shell, Tree};
 
 impl Tree {
     /// Inserts an occluder; whether it blocks any leaf now.
@@ -39,7 +39,18 @@ impl Tree {
         let count = face.corners.len() as u32;
         self.corners
             .extend(self.fragments[..self.top].iter().map(|v| v.p));
-        let corners = &self.fragments[..self.top];
+        let (mut low, mut high) = ([0.0_f64; 3], [0.0_f64; 3]);
+        for v in &self.fragments[..self.top] {
+            for k in 0..3 {
+                low[k] = low[k].min(v.p[k]);
+                high[k] = high[k].max(v.p[k]);
+            }
+        }
+        // More than the conversion rounds.
+        let shell = Shell {
+            low: low.map(|c| (c * 1.000_001) as f32),
+            high: high.map(|c| (c * 1.000_001) as f32),
+        };
         self.blockers.push(Blocker {
             normal,
             offset,
@@ -48,11 +59,13 @@ impl Tree {
             first: start,
             count,
             facing,
-            low: std::array::from_fn(|k| corners.iter().fold(0.0_f64, |m, c| m.min(c.p[k]))),
-            high: std::array::from_fn(|k| corners.iter().fold(0.0_f64, |m, c| m.max(c.p[k]))),
+            low,
+            high,
+            shell,
             axes: NO_LINE,
         });
         self.hits.push(0);
+        self.way.clear();
         let planted = self.descend(face, NO_LINE, 0, 0);
         if !planted {
             self.blockers.pop();
@@ -87,19 +100,67 @@ impl Tree {
                 if !self.room(end - start) {
                     return planted;
                 }
-                let middle = self.split(child, start);
-                planted |= self.descend(face, 2 * child + 1, middle, depth);
-                self.top = middle;
-                slot = 2 * child;
+                let children = self.nodes[child as usize].children;
+                let [outer, inner] = children.map(|c| !self.is_behind_all(c, start));
+                if outer && inner {
+                    let middle = self.split(child, start);
+                    let length = self.way.len();
+                    self.way.push(2 * child + 1);
+                    planted |= self.descend(face, 2 * child + 1, middle, depth);
+                    self.way.truncate(length);
+                    self.top = middle;
+                    slot = 2 * child;
+                } else if outer || inner {
+                    self.trim(child, start, inner);
+                    slot = 2 * child + u32::from(inner);
+                } else {
+                    return planted;
+                }
                 start = end;
+                self.way.push(slot);
             } else if positive || negative {
                 if doubtful {
                     self.mark(child, face.lines, start);
                 }
                 slot = 2 * child + u32::from(positive);
+                if !self.clear {
+                    self.way.push(slot);
+                }
             } else {
                 // All of it is doubtful.
                 return planted;
+            }
+        }
+    }
+
+    /// Whether all of a fragment is surely behind what is below a child.
+    #[inline]
+    fn is_behind_all(&self, child: u32, start: usize) -> bool {
+        let fragment = &self.fragments[start..self.top];
+        match child {
+            OPEN => false,
+            OUTSIDE => true,
+            leaf if leaf & LEAF != 0 => {
+                let b = &self.blockers[(leaf & !LEAF) as usize];
+                let mut behind = true;
+                for v in fragment {
+                    behind &= dot(b.normal, v.p) - b.offset > v.zone + b.zone;
+                }
+                behind
+            }
+            node => {
+                let shell = &self.shells[node as usize];
+                if shell.is_open() {
+                    return false;
+                }
+                let (mut below, mut above) = ([true; 3], [true; 3]);
+                for v in fragment {
+                    for k in 0..3 {
+                        below[k] &= v.p[k] < f64::from(shell.low[k]);
+                        above[k] &= v.p[k] > f64::from(shell.high[k]);
+                    }
+                }
+                below.contains(&true) || above.contains(&true)
             }
         }
     }
@@ -173,15 +234,13 @@ impl Tree {
             }
             zone = zone.max(v.zone);
         }
-        let mut above = slot;
-        while above != NO_LINE {
+        for &above in &self.way {
             let node = above / 2;
             let d = dot(self.nodes[node as usize].plane, middle);
             let d = if above % 2 == 1 { d } else { -d };
             if d <= zone {
                 return false;
             }
-            above = self.origins[node as usize].parent;
         }
         for i in 0..count {
             if dot(edge_plane(self, i).0, middle) <= zone {
@@ -207,6 +266,7 @@ impl Tree {
             slot = 2 * node + 1;
         }
         self.put(slot, LEAF | blocker as u32);
+        self.close(slot);
         true
     }
 

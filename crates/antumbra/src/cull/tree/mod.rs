@@ -36,6 +36,47 @@ struct Node {
     children: [u32; 2],
 }
 
+/// Around the eye and all that blocks below a node; infinite if something there is open.
+///
+/// What is beyond it is hidden: let `p[k] > high[k]`. On the way from the eye to `p` something blocks, at
+/// `t p`. That lies in the shell: `t p[k] <= high[k] < p[k]`, and `p[k] > 0`, so `t < 1`.
+#[derive(Clone, Copy, PartialEq)]
+struct Shell {
+    low: [f32; 3],
+    high: [f32; 3],
+}
+
+impl Shell {
+    const OPEN: Self = Self {
+        low: [f32::NEG_INFINITY; 3],
+        high: [f32::INFINITY; 3],
+    };
+    const EMPTY: Self = Self {
+        low: [0.0; 3],
+        high: [0.0; 3],
+    };
+
+    fn union(self, other: Self) -> Self {
+        Self {
+            low: std::array::from_fn(|k| self.low[k].min(other.low[k])),
+            high: std::array::from_fn(|k| self.high[k].max(other.high[k])),
+        }
+    }
+
+    fn is_open(&self) -> bool {
+        self.high[0] == f32::INFINITY
+    }
+
+    /// Whether all of a box is beyond. Exact: boxes are differences of grid points with the eye.
+    #[inline]
+    fn hides(&self, block: &Block) -> bool {
+        (0..3).any(|k| {
+            block.center[k] - block.half[k] > f64::from(self.high[k])
+                || block.center[k] + block.half[k] < f64::from(self.low[k])
+        })
+    }
+}
+
 /// What only insertion needs to know of a node.
 #[derive(Clone, Copy)]
 struct Origin {
@@ -72,6 +113,8 @@ struct Blocker {
     /// Around the eye and the corners.
     low: [f64; 3],
     high: [f64; 3],
+    /// The same, rounded outward.
+    shell: Shell,
     /// Where its axes start, once they were asked for.
     axes: u32,
 }
@@ -80,6 +123,11 @@ pub(super) struct Tree {
     eye: [f64; 3],
     nodes: Vec<Node>,
     origins: Vec<Origin>,
+    shells: Vec<Shell>,
+    /// Whether all below a node hid something at once.
+    used: Vec<bool>,
+    /// The slots on the way of a fragment whose planes its parts may come near to.
+    way: Vec<u32>,
     root: u32,
     /// Nodes of the frustum at the start.
     frame: u32,
@@ -90,6 +138,11 @@ pub(super) struct Tree {
     /// A stack of fragments.
     fragments: Vec<Vertex>,
     top: usize,
+    /// The widest doubtful zone of what was loaded, and so of all its parts.
+    zone: f64,
+    /// Whether the fragment that was classified last is far from the plane: twice the zone, so that all
+    /// that is cut from it, and any mean of that, is surely on the same side.
+    clear: bool,
     signs: [i8; MAX_CORNERS],
     sides: [f64; MAX_CORNERS],
     /// How often each blocker hid something.
@@ -111,6 +164,9 @@ impl Tree {
             eye: [0.0; 3],
             nodes: Vec::with_capacity(max_nodes),
             origins: Vec::with_capacity(max_nodes),
+            shells: Vec::with_capacity(max_nodes),
+            used: Vec::with_capacity(max_nodes),
+            way: Vec::with_capacity(MAX_DEPTH),
             root: OPEN,
             frame: 0,
             blockers: Vec::with_capacity(max_blockers),
@@ -118,6 +174,8 @@ impl Tree {
             axes: Vec::with_capacity(max_blockers * 30),
             fragments: vec![Vertex::NONE; 2 * (MAX_DEPTH + MAX_OCCLUDER_CORNERS + 4) * MAX_CORNERS],
             top: 0,
+            clear: false,
+            zone: 0.0,
             signs: [0; MAX_CORNERS],
             sides: [0.0; MAX_CORNERS],
             hits: Vec::with_capacity(max_blockers),
@@ -141,6 +199,8 @@ impl Tree {
         self.marking = marking;
         self.nodes.clear();
         self.origins.clear();
+        self.shells.clear();
+        self.used.clear();
         self.blockers.clear();
         self.corners.clear();
         self.axes.clear();
@@ -166,6 +226,7 @@ impl Tree {
             _ => plane_through_eye(edges[i], edges[(i + 1) % 4]),
         });
         self.hits.fill(0);
+        self.used.fill(false);
         self.steps = 0;
         self.visits = 0;
     }
@@ -201,6 +262,8 @@ impl Tree {
             line,
             parent: slot,
         });
+        self.shells.push(Shell::OPEN);
+        self.used.push(false);
         self.put(slot, node);
         node
     }
@@ -221,15 +284,56 @@ impl Tree {
         }
     }
 
+    fn shell(&self, child: u32) -> Shell {
+        match child {
+            OPEN => Shell::OPEN,
+            OUTSIDE => Shell::EMPTY,
+            leaf if leaf & LEAF != 0 => self.blockers[(leaf & !LEAF) as usize].shell,
+            node => self.shells[node as usize],
+        }
+    }
+
+    /// Tells the nodes above a slot what blocks below now.
+    fn close(&mut self, mut slot: u32) {
+        while slot != NO_LINE {
+            let node = slot / 2;
+            let [outer, inner] = self.nodes[node as usize].children;
+            let shell = self.shell(outer).union(self.shell(inner));
+            let old = std::mem::replace(&mut self.shells[node as usize], shell);
+            if old == shell {
+                return;
+            }
+            slot = self.origins[node as usize].parent;
+        }
+    }
+
+    /// Credits the blockers below nodes that hid something as a whole: all had a part.
+    pub(super) fn spread_hits(&mut self) {
+        for node in 0..self.nodes.len() {
+            if self.used[node] {
+                for child in self.nodes[node].children {
+                    if child & LEAF == 0 {
+                        self.used[child as usize] = true;
+                    } else if child < OUTSIDE {
+                        self.hits[(child & !LEAF) as usize] += 1;
+                    }
+                }
+            }
+        }
+    }
+
     /// Loads a polygon as the first fragment.
     fn load(&mut self, face: &Face<'_>) {
         let eye = self.eye;
         self.top = face.corners.len();
+        self.zone = 0.0;
         for (i, (v, &c)) in self.fragments.iter_mut().zip(face.corners).enumerate() {
             let p = sub(c, eye);
+            let zone = TAU * size(p);
+            self.zone = self.zone.max(zone);
             *v = Vertex {
                 p,
-                zone: TAU * size(p),
+                zone,
                 edge: i as u32,
                 from: CORNER,
             };

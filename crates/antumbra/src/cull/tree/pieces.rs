@@ -56,6 +56,7 @@ impl Tree {
     /// [BHS98, 6.2]. The eye must not be in the box.
     pub(in crate::cull) fn hides_outline(&mut self, block: &Block, test: LeafTest) -> bool {
         self.top = outline(block, &mut self.fragments);
+        self.zone = block.zone();
         if self.top == 0 {
             return false;
         }

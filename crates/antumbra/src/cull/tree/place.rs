@@ -24,6 +24,23 @@ impl Tree {
         start: usize,
     ) -> (bool, bool, bool) {
         let plane = self.nodes[node as usize].plane;
+        let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for v in &self.fragments[start..self.top] {
+            let d = dot(plane, v.p);
+            lowest = if d < lowest { d } else { lowest };
+            highest = if d > highest { d } else { highest };
+        }
+        let far = 2.0 * self.zone;
+        self.clear = lowest > far || highest < -far;
+        if self.clear {
+            return (lowest > far, highest < -far, false);
+        }
+        self.classify_each(node, face, start)
+    }
+
+    /// The same where vertices are apart or near the plane; keeps their signs.
+    fn classify_each(&mut self, node: u32, face: &Face<'_>, start: usize) -> (bool, bool, bool) {
+        let plane = self.nodes[node as usize].plane;
         let (mut positive, mut negative, mut doubtful) = (false, false, false);
         let fragment = &self.fragments[start..self.top];
         let places = self.sides.iter_mut().zip(&mut self.signs);
@@ -112,6 +129,21 @@ impl Tree {
             corner - self.eye[k]
         });
         [a, b, ends].iter().all(|l| on_line(point, l[0], l[1]))
+    }
+
+    /// Appends one part of a fragment that was classified last.
+    pub(super) fn trim(&mut self, node: u32, start: usize, positive: bool) {
+        let end = self.top;
+        let n = end - start;
+        let (old, free) = self.fragments.split_at_mut(end);
+        let old = &old[start..];
+        let (sides, signs) = (&self.sides[..n], &self.signs[..n]);
+        let count = if positive {
+            clip::<POSITIVE>(old, sides, signs, WALL | node, free)
+        } else {
+            clip::<NEGATIVE>(old, sides, signs, WALL | node, free)
+        };
+        self.top = end + count;
     }
 
     /// Appends both parts of a fragment that was classified last, the negative one first; returns where
