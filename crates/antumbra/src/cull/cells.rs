@@ -62,7 +62,7 @@ impl Culler {
         let leaves = (0..self.hierarchy.nodes.len() as u32)
             .filter(|&n| self.hierarchy.nodes[n as usize].children.is_none());
         leaves.map(|n| {
-            let cell = self.hierarchy.nodes[n as usize].kd.bounds;
+            let cell = self.hierarchy.cells[n as usize].bounds;
             Cell {
                 min: self.grid.to_scene(cell.min),
                 max: self.grid.to_scene(cell.max),
@@ -85,7 +85,7 @@ impl Culler {
         if memory.frame != frame {
             return CellState::Outside;
         }
-        let cell = Bounds::of(&self.hierarchy.nodes[leaf as usize].kd.bounds);
+        let cell = Bounds::of(&self.hierarchy.cells[leaf as usize].bounds);
         match memory.state {
             State::Outside => CellState::Outside,
             State::Invisible if memory.propagated => CellState::Propagated,

@@ -162,7 +162,7 @@ impl Propagation {
         eye: [f64; 3],
         frame: u32,
     ) -> bool {
-        let here = hierarchy.nodes[node as usize].kd;
+        let here = hierarchy.cells[node as usize];
         let cell = Bounds::of(&here.bounds);
         let mut any = false;
         for face in BoxFace::ALL {

@@ -37,29 +37,31 @@ fn gcd(a: i64, b: i64) -> i64 {
     a
 }
 
+struct Head {
+    /// Its corners and lines.
+    first: u32,
+    end: u32,
+    normal: [f64; 3],
+    parts: [[f64; 3]; 2],
+}
+
 /// A list of convex polygons with at most [`MAX_OCCLUDER_CORNERS`] corners.
 #[derive(Default)]
 pub(super) struct Faces {
     corners: Vec<[f64; 3]>,
     lines: Vec<u32>,
-    /// `corners[first[i]..first[i + 1]]` are those of face `i`.
-    first: Vec<u32>,
-    normals: Vec<[f64; 3]>,
-    parts: Vec<[[f64; 3]; 2]>,
+    heads: Vec<Head>,
     areas: Vec<f64>,
     middles: Vec<[f64; 3]>,
 }
 
 impl Faces {
     pub(super) fn new() -> Self {
-        Self {
-            first: vec![0],
-            ..Self::default()
-        }
+        Self::default()
     }
 
     pub(super) fn len(&self) -> usize {
-        self.normals.len()
+        self.heads.len()
     }
 
     /// Appends a convex polygon that turns counter-clockwise about a normal; cut into several along
@@ -81,7 +83,7 @@ impl Faces {
 
     fn push_piece(&mut self, lines: &mut Lines, corners: &[Point], normal: [i64; 3]) {
         let n = corners.len();
-        self.parts.push(parts(normal));
+        let (parts, first) = (parts(normal), self.corners.len() as u32);
         let normal = normal.map(|c| c as f64);
         let length = normal.iter().map(|c| c * c).sum::<f64>().sqrt();
         let normal = normal.map(|c| c / length);
@@ -100,24 +102,29 @@ impl Faces {
             let fan = cross(sub(corners[i], corners[0]), sub(corners[i + 1], corners[0]));
             area += (0..3).map(|k| fan[k] as f64 * normal[k]).sum::<f64>() / 2.0;
         }
-        self.first.push(self.corners.len() as u32);
-        self.normals.push(normal);
+        self.heads.push(Head {
+            first,
+            end: self.corners.len() as u32,
+            normal,
+            parts,
+        });
         self.areas.push(area);
         self.middles.push(middle);
     }
 
     pub(super) fn get(&self, i: u32) -> Face<'_> {
-        let range = self.first[i as usize] as usize..self.first[i as usize + 1] as usize;
+        let head = &self.heads[i as usize];
+        let range = head.first as usize..head.end as usize;
         Face {
             corners: &self.corners[range.clone()],
             lines: &self.lines[range],
-            normal: self.normals[i as usize],
-            parts: self.parts[i as usize],
+            normal: head.normal,
+            parts: head.parts,
         }
     }
 
     pub(super) fn normal(&self, i: u32) -> [f64; 3] {
-        self.normals[i as usize]
+        self.heads[i as usize].normal
     }
 
     /// In square grid steps.

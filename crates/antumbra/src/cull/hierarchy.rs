@@ -7,7 +7,7 @@
 use antumbra_kernel::Aabb;
 use antumbra_scene::{KdBox, KdNode, KdTree, PolygonId, Scene};
 
-use super::bound::dot;
+use super::bound::{dot, sub};
 use super::faces::Faces;
 use super::fragment::Block;
 
@@ -68,8 +68,62 @@ impl Bounds {
         }
     }
 
+    /// The same in half the memory: grid coordinates fit.
+    fn compact(&self) -> CompactBounds {
+        CompactBounds {
+            low: self.low.map(|c| c as f32),
+            high: self.high.map(|c| c as f32),
+        }
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         (0..3).any(|k| self.low[k] > self.high[k])
+    }
+}
+
+/// [`Bounds`] of whole grid steps, which are below 2^24 and so exact.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CompactBounds {
+    low: [f32; 3],
+    high: [f32; 3],
+}
+
+impl CompactBounds {
+    #[inline]
+    pub(super) fn wide(&self) -> Bounds {
+        Bounds {
+            low: self.low.map(f64::from),
+            high: self.high.map(f64::from),
+        }
+    }
+}
+
+/// An occluder of a leaf, and what its area-angle depends on, nearly.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LeafOccluder {
+    pub number: u32,
+    pub area: f32,
+    middle: [f32; 3],
+    normal: [f32; 3],
+}
+
+impl LeafOccluder {
+    fn new(number: u32, occluders: &Faces) -> Self {
+        Self {
+            number,
+            area: occluders.area(number) as f32,
+            middle: occluders.middle(number).map(|c| c as f32),
+            normal: occluders.normal(number).map(|c| c as f32),
+        }
+    }
+
+    /// In steradians, nearly [Bittner02, 4.5].
+    #[inline]
+    pub(super) fn area_angle(&self, eye: [f64; 3]) -> f64 {
+        let d = sub(self.middle.map(f64::from), eye);
+        let squared = dot(d, d);
+        let facing = dot(self.normal.map(f64::from), d).abs();
+        f64::from(self.area) * facing / (squared * squared.sqrt())
     }
 }
 
@@ -86,12 +140,12 @@ pub(super) struct Item {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HierarchyNode {
     /// Around all that is in the node.
-    pub bounds: Bounds,
-    /// The node of the kD-tree.
-    pub kd: KdBox,
+    pub bounds: CompactBounds,
+    /// Whether nothing is.
+    pub empty: bool,
     /// The plane between the children.
     pub axis: u8,
-    pub at: f64,
+    pub at: f32,
     /// The node above; the root's own number for the root.
     pub parent: u32,
     /// Lower and upper child; none for a leaf.
@@ -111,9 +165,11 @@ pub(super) struct HierarchyNode {
 pub(super) struct Hierarchy {
     /// Parents before children; the first is the root. Empty for a scene without polygons.
     pub nodes: Vec<HierarchyNode>,
+    /// The node of the kD-tree that each was made of.
+    pub cells: Vec<KdBox>,
     pub items: Vec<Item>,
     pub polygons: Vec<u32>,
-    pub occluders: Vec<u32>,
+    pub occluders: Vec<LeafOccluder>,
     pub objects: Vec<u32>,
     /// The node made of a kD node; for one that was pruned, the leaf above it.
     pub of_kd: Vec<u32>,
@@ -154,15 +210,14 @@ impl Hierarchy {
 
     /// The leaf whose cell holds a point; none outside.
     pub(super) fn leaf_at(&self, p: [f64; 3]) -> Option<u32> {
-        let root = self.nodes.first()?;
-        let cell = Bounds::of(&root.kd.bounds);
+        let cell = Bounds::of(&self.cells.first()?.bounds);
         if (0..3).any(|k| p[k] < cell.low[k] || p[k] > cell.high[k]) {
             return None;
         }
         let mut node = 0;
         while let Some([lower, upper]) = self.nodes[node as usize].children {
             let n = &self.nodes[node as usize];
-            node = if p[n.axis as usize] < n.at {
+            node = if p[n.axis as usize] < f64::from(n.at) {
                 lower
             } else {
                 upper
@@ -179,7 +234,10 @@ impl Hierarchy {
             let mut stack = vec![0_u32];
             while let Some(node) = stack.pop() {
                 let n = &self.nodes[node as usize];
-                if Bounds::of(&n.kd.bounds).meet(&bounds).is_empty() {
+                if Bounds::of(&self.cells[node as usize].bounds)
+                    .meet(&bounds)
+                    .is_empty()
+                {
                     continue;
                 }
                 match n.children {
@@ -197,7 +255,8 @@ impl Hierarchy {
             });
             let first = self.occluders.len() as u32;
             self.nodes[node].occluders = (first, first + list.len() as u32);
-            self.occluders.extend(list);
+            let of_leaf = |number| LeafOccluder::new(number, occluders);
+            self.occluders.extend(list.into_iter().map(of_leaf));
         }
     }
 }
@@ -218,9 +277,10 @@ impl Builder<'_> {
         let number = self.out.nodes.len() as u32;
         self.out.of_kd[here.node as usize] = number;
         let cost = self.costs[here.node as usize];
+        self.out.cells.push(here);
         self.out.nodes.push(HierarchyNode {
-            bounds: Bounds::EMPTY,
-            kd: here,
+            bounds: Bounds::EMPTY.compact(),
+            empty: true,
             axis: 0,
             at: 0.0,
             parent,
@@ -239,13 +299,14 @@ impl Builder<'_> {
                 objects.extend(more);
                 objects.sort_unstable();
                 objects.dedup();
-                let bounds = self.out.nodes[lower as usize]
-                    .bounds
-                    .union(&self.out.nodes[upper as usize].bounds);
+                let [below, above] =
+                    [lower, upper].map(|n| self.out.nodes[n as usize].bounds.wide());
+                let bounds = below.union(&above);
                 let node = &mut self.out.nodes[number as usize];
-                node.bounds = bounds;
+                node.bounds = bounds.compact();
+                node.empty = bounds.is_empty();
                 node.axis = axis;
-                node.at = f64::from(at);
+                node.at = at as f32;
                 node.children = Some([lower, upper]);
                 objects
             }
@@ -311,7 +372,8 @@ impl Builder<'_> {
         }
         let node = &mut self.out.nodes[number as usize];
         node.items = (first_item, self.out.items.len() as u32);
-        node.bounds = around;
+        node.bounds = around.compact();
+        node.empty = around.is_empty();
         objects
     }
 

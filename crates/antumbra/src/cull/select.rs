@@ -3,7 +3,7 @@
 //! The quality of an occluder is its area-angle [Bittner02, 4.5], `A |N . V| / D^2` with the direction V
 //! and the distance D of its middle.
 
-use antumbra_scene::{FusedOccluder, Scene, fuse_occluders};
+use antumbra_scene::{FusedOccluder, KdBox, Scene, fuse_occluders};
 
 use super::bound::{dot, sub};
 use super::faces::{Faces, Lines};
@@ -44,11 +44,11 @@ impl Occluders {
 
     /// Finds the occluders of all regions. Time: leaves times occluders.
     pub(super) fn look_around(&mut self, hierarchy: &Hierarchy) {
-        let of_leaf = |node: &super::hierarchy::HierarchyNode| {
+        let of_leaf = |(node, cell): (&super::hierarchy::HierarchyNode, &KdBox)| {
             if node.children.is_some() {
                 return Vec::new();
             }
-            let cell = Bounds::of(&node.kd.bounds);
+            let cell = Bounds::of(&cell.bounds);
             let middle = std::array::from_fn(|k| (cell.low[k] + cell.high[k]) * 0.5);
             let mut best: Vec<(f64, u32)> = (0..self.faces.len() as u32)
                 .map(|o| (self.area_angle(o, middle), o))
@@ -56,7 +56,12 @@ impl Occluders {
             keep_largest(&mut best, REGION_OCCLUDERS);
             best.into_iter().map(|(_, o)| o).collect()
         };
-        self.regions = hierarchy.nodes.iter().map(of_leaf).collect();
+        self.regions = hierarchy
+            .nodes
+            .iter()
+            .zip(&hierarchy.cells)
+            .map(of_leaf)
+            .collect();
     }
 
     /// The list of a leaf.

@@ -5,7 +5,7 @@ use antumbra_scene::ObjectId;
 use super::bound::snap_eye;
 use super::coherence::{Memory, State};
 use super::fragment::Block;
-use super::hierarchy::{Bounds, HierarchyNode};
+use super::hierarchy::Bounds;
 use super::options::{LeafTest, Method, MinimumCost, Order, Selection};
 use super::select::keep_largest;
 use super::tree::ROOT;
@@ -160,15 +160,15 @@ impl Culler {
         };
         self.chosen.clear();
         for &leaf in &self.seen_leaves {
-            let HierarchyNode { kd, occluders, .. } = &self.hierarchy.nodes[leaf as usize];
-            let cell = Bounds::of(&kd.bounds);
+            let occluders = self.hierarchy.nodes[leaf as usize].occluders;
+            let cell = Bounds::of(&self.hierarchy.cells[leaf as usize].bounds);
             let middle: [f64; 3] = std::array::from_fn(|k| (cell.low[k] + cell.high[k]) * 0.5);
             let from_eye = super::bound::sub(middle, eye);
             if super::bound::dot(from_eye, from_eye).sqrt() > distance {
                 continue;
             }
             for i in occluders.0..occluders.1 {
-                let occluder = self.hierarchy.occluders[i as usize];
+                let occluder = self.hierarchy.occluders[i as usize].number;
                 // Marks of the next frame, which nothing else has set yet.
                 let mark = &mut self.tried[occluder as usize];
                 if *mark != u32::MAX {
@@ -210,7 +210,7 @@ impl Culler {
         self.stack.push((0, ROOT));
         while let Some((number, mut entry)) = self.stack.pop() {
             let node = &self.hierarchy.nodes[number as usize];
-            let (children, axis, at) = (node.children, node.axis as usize, node.at);
+            let (children, axis, at) = (node.children, node.axis as usize, f64::from(node.at));
             let tests = self.visible.work.node_tests;
             let state = self.classify(number, eye, (occluding, pass), minimum, &mut entry);
             let before = self.memory[number as usize];
@@ -256,7 +256,7 @@ impl Culler {
         let remembered = before.frame + 1 == frame;
         let was_visible = remembered && before.state == State::Visible;
         let propagating = self.propagation.is_some();
-        if node.bounds.is_empty() && !propagating {
+        if node.empty && !propagating {
             return (State::Invisible, false);
         }
         // Nothing new can be found in it but occluders.
@@ -276,9 +276,9 @@ impl Culler {
         }
         // States of cells are needed where they are passed on.
         let bounds = if propagating {
-            Bounds::of(&node.kd.bounds)
+            Bounds::of(&self.hierarchy.cells[number as usize].bounds)
         } else {
-            node.bounds
+            node.bounds.wide()
         };
         let block = bounds.seen_from(eye);
         if self.options.coherence.updating
@@ -364,7 +364,8 @@ impl Culler {
         before: Memory,
     ) {
         let node = &self.hierarchy.nodes[number as usize];
-        let (items, occluders, cost, bounds) = (node.items, node.occluders, node.cost, node.bounds);
+        let (items, occluders, cost, bounds) =
+            (node.items, node.occluders, node.cost, node.bounds.wide());
         self.seen_leaves.push(number);
         if occluding && self.options.selection.sweeps() {
             self.insert_of_leaf(occluders, bounds, eye);
@@ -415,13 +416,14 @@ impl Culler {
         let smallest = self.options.min_angle * bounds.squared_distance(eye);
         self.near.clear();
         for i in occluders.0..occluders.1 {
-            let occluder = self.hierarchy.occluders[i as usize];
+            let here = &self.hierarchy.occluders[i as usize];
             // The largest come first. Their part in this leaf is no nearer than the leaf.
-            if self.occluders.faces.area(occluder) < smallest {
+            if f64::from(here.area) < smallest {
                 break;
             }
+            let occluder = here.number;
             if self.tried[occluder as usize] == self.visible.frame
-                || self.occluders.area_angle(occluder, eye) < self.options.min_angle
+                || here.area_angle(eye) < self.options.min_angle
             {
                 continue;
             }
