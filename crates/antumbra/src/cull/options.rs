@@ -52,6 +52,9 @@ pub const REGION_OCCLUDERS: usize = 64;
 pub enum Order {
     /// By the distance of their boxes.
     Distance,
+    /// By the squared distance of their boxes over the square root of their area-angle: the tree stays
+    /// small, at the price of more late takeovers.
+    Prominence,
     /// By an autopartition BSP of the chosen ones; those that a plane splits go to its near side.
     Autopartition,
 }
@@ -117,12 +120,19 @@ pub struct CullOptions {
     pub order: Order,
     /// The most occluders that are tried in a frame.
     pub max_occluders: usize,
-    /// The smallest area-angle of an occluder, in steradians.
+    /// The smallest area-angle of an occluder, in steradians, as long as a frame is calm.
     pub min_angle: f64,
+    /// A frame is calm for so many fragments that insertion visits, and as many again for every four
+    /// visible objects found on the way. Beyond, the smallest area-angle grows with the fifth power, so
+    /// that a frame with much to see takes more than one that only looks for it.
+    pub calm_visits: u64,
     /// The most potential occluders: the largest ones.
     pub potential: usize,
     /// The share of all occluding area that potential occluders have together, at most.
     pub potential_share: f64,
+    /// The least area of a potential occluder, as a share of the largest face of the box of the smallest
+    /// object at its corners: what is small on its own object hides little else.
+    pub potential_part: f64,
     /// Fragments that insertion may visit before it stops; a frame that needs more hides less.
     pub max_visits: u64,
     /// Leaves of the hierarchy have about so many polygons.
@@ -149,11 +159,13 @@ impl Default for CullOptions {
             method: Method::Modified(LeafTest::Exact),
             polygons: true,
             selection: Selection::Sweep,
-            order: Order::Distance,
+            order: Order::Prominence,
             max_occluders: 1024,
-            min_angle: 1e-4,
-            potential: 3600,
-            potential_share: 0.99,
+            min_angle: 1e-5,
+            calm_visits: 150,
+            potential: usize::MAX,
+            potential_share: 1.0,
+            potential_part: 0.005,
             max_visits: 10_000,
             leaf_polygons: 24,
             minimum_cost: MinimumCost::None,
@@ -175,9 +187,10 @@ impl CullOptions {
     pub fn tight() -> Self {
         Self {
             max_occluders: 4000,
-            min_angle: 0.0,
-            potential: usize::MAX,
-            potential_share: 1.0,
+            order: Order::Distance,
+            min_angle: 1e-7,
+            calm_visits: 1500,
+            potential_part: 0.0,
             max_visits: u64::MAX,
             thorough: true,
             twice: true,
@@ -196,7 +209,12 @@ impl CullOptions {
                 distance: f64::INFINITY,
             },
             max_occluders: occluders,
+            order: Order::Distance,
             min_angle: 0.0,
+            calm_visits: u64::MAX,
+            potential: 3600,
+            potential_share: 0.99,
+            potential_part: 0.0,
             max_visits: u64::MAX,
             coherence: Coherence::NONE,
             ..Self::default()

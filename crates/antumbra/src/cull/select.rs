@@ -3,7 +3,9 @@
 //! The quality of an occluder is its area-angle [Bittner02, 4.5], `A |N . V| / D^2` with the direction V
 //! and the distance D of its middle.
 
+use antumbra_kernel::{Aabb, Point};
 use antumbra_scene::{FusedOccluder, KdBox, Scene, fuse_occluders};
+use rustc_hash::FxHashMap;
 
 use super::bound::{dot, sub};
 use super::faces::{Faces, Lines};
@@ -30,7 +32,7 @@ impl Occluders {
             owners: Vec::new(),
             regions: Vec::new(),
         };
-        for occluder in potential(fused, options) {
+        for occluder in potential(scene, fused, options) {
             out.faces
                 .push(lines, &occluder.corners, occluder.plane.normal);
             // Many corners make several faces.
@@ -126,17 +128,54 @@ pub(super) fn keep_largest(list: &mut Vec<(f64, u32)>, count: usize) {
     list.sort_unstable_by(order);
 }
 
-/// The largest occluders, in their order.
-fn potential(fused: Vec<FusedOccluder>, options: &CullOptions) -> Vec<FusedOccluder> {
-    let area = |occluder: &FusedOccluder| {
-        let mut faces = Faces::new();
-        faces.push(
-            &mut Lines::default(),
-            &occluder.corners,
-            occluder.plane.normal,
-        );
-        (0..faces.len() as u32).map(|i| faces.area(i)).sum::<f64>()
+/// The area of a potential occluder.
+fn area(occluder: &FusedOccluder) -> f64 {
+    let mut faces = Faces::new();
+    let normal = occluder.plane.normal;
+    faces.push(&mut Lines::default(), &occluder.corners, normal);
+    (0..faces.len() as u32).map(|i| faces.area(i)).sum()
+}
+
+/// For each corner of the scene the largest face of the box of the smallest object that has it.
+fn object_sizes(scene: &Scene) -> FxHashMap<Point, f64> {
+    let mut boxes: Vec<Option<Aabb>> = vec![None; scene.objects().len()];
+    for polygon in scene.polygons() {
+        let of_object = &mut boxes[polygon.object.index()];
+        let known = of_object.iter().flat_map(|b| [b.min, b.max]);
+        *of_object = Aabb::around(polygon.corners.iter().copied().chain(known));
+    }
+    let size = |b: &Option<Aabb>| {
+        b.map_or(0.0, |b| {
+            let [x, y, z] = sub(b.max.to_f64(), b.min.to_f64());
+            (x * y).max(y * z).max(z * x)
+        })
     };
+    let sizes: Vec<f64> = boxes.iter().map(size).collect();
+    let mut of_corner = FxHashMap::default();
+    for polygon in scene.polygons() {
+        let size = sizes[polygon.object.index()];
+        for &corner in polygon.corners {
+            let smallest = of_corner.entry(corner).or_insert(size);
+            *smallest = size.min(*smallest);
+        }
+    }
+    of_corner
+}
+
+/// The largest occluders, in their order; those that are small on their own object left out.
+fn potential(
+    scene: &Scene,
+    mut fused: Vec<FusedOccluder>,
+    options: &CullOptions,
+) -> Vec<FusedOccluder> {
+    if options.potential_part > 0.0 {
+        let sizes = object_sizes(scene);
+        let of_corner = |p: &Point| sizes.get(p).copied().unwrap_or(0.0);
+        fused.retain(|occluder| {
+            let size = occluder.corners.iter().map(of_corner);
+            area(occluder) >= options.potential_part * size.fold(f64::INFINITY, f64::min)
+        });
+    }
     let areas: Vec<f64> = fused.iter().map(area).collect();
     let mut sorted = areas.clone();
     sorted.sort_unstable_by(|a, b| b.total_cmp(a));

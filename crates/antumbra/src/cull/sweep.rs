@@ -129,7 +129,15 @@ impl Culler {
         let occluders = &self.occluders;
         for (key, occluder) in &mut self.chosen {
             *key = match pass {
-                Pass::First => occluders.bounds[*occluder as usize].squared_distance(eye),
+                Pass::First => {
+                    let near = occluders.bounds[*occluder as usize].squared_distance(eye);
+                    match self.options.order {
+                        Order::Prominence => {
+                            near / occluders.area_angle(*occluder, eye).min(6.0).sqrt()
+                        }
+                        Order::Distance | Order::Autopartition => near,
+                    }
+                }
                 Pass::Second => -occluders.area_angle(*occluder, eye),
             };
         }
@@ -411,9 +419,19 @@ impl Culler {
         false
     }
 
+    /// The smallest area-angle now: what insertion costs is weighed against what is seen. Beyond some
+    /// dozens of objects it is not the occluders that are lacking.
+    fn min_angle(&self) -> f64 {
+        let seen = self.visible.objects.len().min(60) as f64;
+        let calm = self.options.calm_visits as f64 * (1.0 + seen / 4.0);
+        let excess = (self.tree.visits as f64 / calm).max(1.0);
+        self.options.min_angle * excess.powi(5)
+    }
+
     /// Inserts the occluders of a leaf that look large enough and are not hidden, the nearest first.
     fn insert_of_leaf(&mut self, occluders: (u32, u32), bounds: Bounds, eye: [f64; 3]) {
-        let smallest = self.options.min_angle * bounds.squared_distance(eye);
+        let min_angle = self.min_angle();
+        let smallest = min_angle * bounds.squared_distance(eye);
         self.near.clear();
         for i in occluders.0..occluders.1 {
             let here = &self.hierarchy.occluders[i as usize];
@@ -423,7 +441,7 @@ impl Culler {
             }
             let occluder = here.number;
             if self.tried[occluder as usize] == self.visible.frame
-                || here.area_angle(eye) < self.options.min_angle
+                || here.area_angle(eye) < min_angle
             {
                 continue;
             }
