@@ -89,6 +89,38 @@ fn an_empty_selection_culls_by_the_frustum_alone() {
     assert_eq!(ids(&mut culler, &look([0.0; 3], X)), [0, 1, 2]);
 }
 
+/// A frame that is no longer calm takes only large occluders: that costs less, and hides no more.
+#[test]
+fn what_insertion_costs_is_weighed() {
+    let input = maze(&MazeParams {
+        rooms: 9,
+        furniture: 6,
+        seed: 5,
+    });
+    let (scene, _) = SceneBuilder::new(input).build().expect("a maze");
+    let sums = |calm_visits| {
+        let options = CullOptions {
+            calm_visits,
+            max_visits: u64::MAX,
+            ..CullOptions::default()
+        };
+        let mut culler = Culler::with_options(&scene, options);
+        let (mut visits, mut seen) = (0, 0);
+        for i in 0..40 {
+            let angle = f64::from(i) * 0.3;
+            let eye = [3.0 + f64::from(i) * 0.4, 4.5, 1.6];
+            let visible = culler.cull(&look(eye, [angle.cos(), angle.sin(), 0.0]));
+            visits += visible.work().tree_visits;
+            seen += visible.objects().len();
+        }
+        (visits, seen)
+    };
+    let (dear, few) = sums(u64::MAX);
+    let (cheap, many) = sums(1);
+    assert!(cheap * 2 < dear, "{cheap} visits of {dear}");
+    assert!(few <= many, "{few} seen, {many} in haste");
+}
+
 #[test]
 fn doors_open_and_close() {
     let options = CullOptions {

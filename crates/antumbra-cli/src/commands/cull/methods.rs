@@ -96,6 +96,8 @@ enum SelectArg {
 enum OrderArg {
     /// By distance
     Distance,
+    /// By squared distance over the square root of the area-angle
+    Prominence,
     /// By an autopartition BSP
     Autopartition,
 }
@@ -154,6 +156,7 @@ impl MethodArgs {
         }
         match self.order {
             Some(OrderArg::Distance) => options.order = Order::Distance,
+            Some(OrderArg::Prominence) => options.order = Order::Prominence,
             Some(OrderArg::Autopartition) => options.order = Order::Autopartition,
             None => {}
         }
