@@ -316,13 +316,15 @@ impl<V: View> Sweeper<'_, V> {
     }
 
     /// Inserts a polygon that was not inserted before; one that is seen brings those coincident
-    /// with it, which a box test may have called hidden.
+    /// with it, which a box test may have called hidden, and those in turn.
     fn insert(&mut self, id: PolygonId) {
-        if self.insert_one(id) {
-            let twins = self.twins;
-            for &twin in twins.of(id) {
-                self.insert_one(twin);
-            }
+        if !self.insert_one(id) {
+            return;
+        }
+        let twins = self.twins;
+        let mut seen = vec![id];
+        while let Some(id) = seen.pop() {
+            seen.extend(twins.of(id).iter().filter(|&&twin| self.insert_one(twin)));
         }
     }
 

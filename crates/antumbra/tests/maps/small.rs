@@ -190,6 +190,64 @@ fn dissolved_maps_do_not_depend_on_the_order_of_insertion() {
     }
 }
 
+/// Axis-parallel rectangles in a few planes, many on top of each other, an object each.
+fn layers(random: &mut Random, count: usize) -> Scene {
+    let objects = (0..count).map(|_| {
+        let k = random.index(3);
+        let (u, v) = ((k + 1) % 3, (k + 2) % 3);
+        let (mut low, mut size) = ([0.0; 3], [0.0; 3]);
+        low[k] = [-16.0, -13.0, 14.0, 16.0][random.index(4)];
+        for i in [u, v] {
+            low[i] = random.index(32) as f64 - 16.0;
+            size[i] = 1.0 + random.index(9) as f64;
+        }
+        let at = |a: f64, b: f64| {
+            let mut p = low;
+            p[u] += a * size[u];
+            p[v] += b * size[v];
+            p
+        };
+        let mut faces = Faces::default();
+        faces.push(&[0, 1, 2, 3]);
+        let parts = vec![PartInput {
+            vertices: vec![at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)],
+            faces,
+            ..PartInput::default()
+        }];
+        ObjectInput { name: None, parts }
+    });
+    let input = SceneInput {
+        objects: objects.collect(),
+        source_name: "layers".into(),
+    };
+    let (scene, _) = SceneBuilder::new(input)
+        .grid(Some(1.0))
+        .build()
+        .expect("a sound scene");
+    scene
+}
+
+/// What coincides with what is seen is found through any number of others that coincide with both.
+#[test]
+fn chains_of_coincident_polygons_are_owned_by_the_smallest() {
+    for seed in 0..rounds() / 4 {
+        let mut random = Random::new(4000 + seed);
+        let scene = layers(&mut random, 300);
+        let eye: [f64; 3] = std::array::from_fn(|_| random.index(11) as f64 - 5.0);
+        let mapper = Mapper::new(&scene);
+        let view = Viewpoint::Sphere(eye);
+        let mut options = MapOptions::default();
+        options.sweep.test = occlusion::BoxTest::Never;
+        let expected = mapper.map(&view, &options).expect("a view");
+        for test in [occlusion::BoxTest::Conservative, occlusion::BoxTest::Exact] {
+            options.sweep.test = test;
+            let map = mapper.map(&view, &options).expect("a view");
+            let other = difference(&expected, &map);
+            assert!(other.is_empty(), "seed {seed}, {test:?}: {other:#?}");
+        }
+    }
+}
+
 #[test]
 fn angles_add_up_and_classes_fit_their_faces() {
     for seed in 0..rounds() {
