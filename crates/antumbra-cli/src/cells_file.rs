@@ -2,15 +2,16 @@
 
 use std::path::Path;
 
+use antumbra_io::read_unpacked;
 use antumbra_scene::NamedBox;
 use serde_json::Value;
 
 use crate::failure::Failure;
-use crate::load::SceneBox;
+use crate::load::{SceneBox, read_failure};
 
-/// Reads the boxes of a file.
+/// Reads the boxes of a file, which may be gzip'd.
 pub(crate) fn read(path: &Path) -> Result<Vec<NamedBox>, Failure> {
-    let text = std::fs::read(path).map_err(|cause| Failure::unreadable(path, &cause))?;
+    let text = read_unpacked(path).map_err(|error| read_failure(&error))?;
     parse(&text).map_err(|fault| Failure::Content(format!("{}: {fault}", path.display())))
 }
 

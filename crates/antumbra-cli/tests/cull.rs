@@ -3,9 +3,12 @@
 mod tool;
 
 use std::fmt::Write;
+use std::io::Write as _;
 
 use antumbra_testkit::environment::{data, long, skip};
 use antumbra_testkit::random::Random;
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use serde_json::Value;
 use tool::Folder;
 
@@ -122,6 +125,12 @@ fn damaged_paths_are_refused_by_line() {
         let run = folder.run("cull maze.glb --path bad.path --csv out.csv");
         assert!(run.failure(3).contains(part), "{text}: {run:?}");
     }
+    folder.write("bad.path", b"\x1f\x8bnothing");
+    let run = folder.run("cull maze.glb --path bad.path");
+    assert!(
+        run.failure(3).contains("the gzip data is damaged"),
+        "{run:?}"
+    );
     folder.write("bad.path", b"\xff\xfe\x00");
     folder.run("cull maze.glb --path bad.path").failure(3);
     folder
@@ -144,6 +153,81 @@ fn damaged_paths_are_refused_by_line() {
             .iter()
             .any(|n| n == "out.csv" || n == "t.svg")
     );
+}
+
+#[test]
+fn options_that_make_no_sense_are_refused() {
+    let folder = folder();
+    for (options, part) in [
+        ("--aspect 16/9", "16:9"),
+        ("--aspect 1e300:1e-300", "1000 times"),
+        ("--csv a.out --svg a.out", "two results"),
+        ("--frame 3", "--top"),
+        ("--skip 1.5", "from 0 to 1"),
+        ("--minimum-cost much", "a number of polygons, or auto"),
+        ("--open 3", "--doors"),
+    ] {
+        let run = folder.run(&format!("cull maze.glb --path walk.path {options}"));
+        assert!(run.failure(2).contains(part), "{options}: {run:?}");
+    }
+    assert!(!folder.names().iter().any(|n| n == "a.out"));
+}
+
+#[test]
+fn paths_are_read_compressed_or_with_a_mark_before_them() {
+    let folder = folder();
+    let plain = folder.bytes("walk.path");
+    let visible = |path: &str| {
+        let result = folder
+            .run(&format!("cull maze.glb --path {path} --json"))
+            .json();
+        let frames = result["frames"].as_array().expect("frames");
+        frames.iter().map(ids).collect::<Vec<_>>()
+    };
+    let expected = visible("walk.path");
+    let mut packed = GzEncoder::new(Vec::new(), Compression::default());
+    packed.write_all(&plain).expect("memory");
+    folder.write("walk.path.gz", packed.finish().expect("memory"));
+    assert_eq!(visible("walk.path.gz"), expected);
+    folder.write("marked.path", [b"\xef\xbb\xbf".as_slice(), &plain].concat());
+    assert_eq!(visible("marked.path"), expected);
+}
+
+#[test]
+fn eyes_in_walls_outside_and_far_away_get_an_answer() {
+    let folder = folder();
+    let (ahead, back) = ("1 0 0 0 0 1 60", "-1 0 0 0 0 1 60");
+    let mut path = String::new();
+    for eye in [
+        "0 7.5 1.6",
+        "7.5 0 0",
+        "7.5 7.5 0",
+        "-40 7.5 1.6",
+        "7.5 7.5 90",
+        "-1e7 7.5 1.6",
+        "1e300 0 0",
+    ] {
+        writeln!(path, "{eye} {ahead}\n{eye} {back}").expect("a string");
+    }
+    // The narrowest and the widest view.
+    writeln!(
+        path,
+        "7 7.5 1.6 1 0 0 0 0 1 0.001\n7 7.5 1.6 1 0 0 0 0 1 179.9"
+    )
+    .expect("a string");
+    folder.write("odd.path", path);
+    for preset in ["fast", "tight", "paper"] {
+        let line = format!(
+            "cull maze.glb --path odd.path --preset {preset} --verify --size 160x90 --json"
+        );
+        let result = folder.run(&line).json();
+        assert_eq!(
+            result["verify"]["wrong_culls"],
+            serde_json::json!([]),
+            "{preset}"
+        );
+        assert_eq!(result["frames"].as_array().map(Vec::len), Some(16));
+    }
 }
 
 /// 100,000 random views of real scenes, inside, in walls and outside, against item buffers of 320 x 180

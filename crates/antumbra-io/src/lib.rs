@@ -67,4 +67,6 @@ pub use obj::write_obj;
 pub use proof::ProofFile;
 #[cfg(feature = "pvs")]
 pub use pvs::{PvsError, PvsFile, PvsWriter};
-pub use read::{ReadOptions, Resolver, Up, parse_scene, read_scene, read_scene_with};
+pub use read::{
+    ReadOptions, Resolver, Up, parse_scene, read_scene, read_scene_with, read_unpacked,
+};

@@ -56,13 +56,30 @@ pub fn read_scene(path: &Path) -> Result<SceneInput, ReadError> {
 /// If the path cannot be read or the content is damaged; see [`ReadError`].
 pub fn read_scene_with(path: &Path, options: &ReadOptions) -> Result<SceneInput, ReadError> {
     let file = path.display().to_string();
-    let bytes = fs::read(path).map_err(|cause| ReadError::Path {
-        file: file.clone(),
-        cause,
-    })?;
+    let bytes = bytes_of(path)?;
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     parse_scene(&bytes, &file, options, &mut |uri| {
         fs::read(folder.join(uri))
+    })
+}
+
+/// The bytes of a text file that may be gzip'd: those of the text.
+///
+/// # Errors
+/// If the path cannot be read or the gzip data is damaged.
+pub fn read_unpacked(path: &Path) -> Result<Vec<u8>, ReadError> {
+    let bytes = bytes_of(path)?;
+    let unpacked = gunzip(&bytes).map_err(|damage| ReadError::Content {
+        file: path.display().to_string(),
+        damage,
+    })?;
+    Ok(unpacked.unwrap_or(bytes))
+}
+
+fn bytes_of(path: &Path) -> Result<Vec<u8>, ReadError> {
+    fs::read(path).map_err(|cause| ReadError::Path {
+        file: path.display().to_string(),
+        cause,
     })
 }
 

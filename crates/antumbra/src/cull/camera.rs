@@ -28,7 +28,7 @@ pub enum CameraError {
     NoUp,
     /// Not an angle of a pyramid.
     #[error(
-        "a view {degrees} degrees high is not a pyramid; choose an angle above 0 and below 180"
+        "a view {degrees} degrees high is no pyramid to compute with; choose an angle above 0.000001 and below 179.999999"
     )]
     NoAngle {
         /// What was given.

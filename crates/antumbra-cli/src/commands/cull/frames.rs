@@ -1,15 +1,17 @@
-//! Camera paths: text, `#` comments, one camera a line.
+//! Camera paths: text, also gzip'd, `#` comments, one camera a line.
 
 use std::path::Path;
 
 use antumbra::cull::Camera;
+use antumbra_io::read_unpacked;
 
 use crate::failure::Failure;
+use crate::load::read_failure;
 
 /// Reads a path: `ex ey ez dx dy dz ux uy uz fovy` a line, the full vertical angle in degrees;
 /// direction and up need be neither unit nor orthogonal.
 pub(super) fn read(path: &Path, aspect: f64) -> Result<Vec<Camera>, Failure> {
-    let bytes = std::fs::read(path).map_err(|cause| Failure::unreadable(path, &cause))?;
+    let bytes = read_unpacked(path).map_err(|error| read_failure(&error))?;
     let wrong = |line: usize, text: String| {
         Failure::Content(format!("{}, line {line}: {text}", path.display()))
     };
@@ -20,6 +22,8 @@ pub(super) fn read(path: &Path, aspect: f64) -> Result<Vec<Camera>, Failure> {
         )));
     };
     let mut cameras = Vec::new();
+    // Some editors put a mark before the text.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     for (i, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or_default().trim();
         if line.is_empty() {

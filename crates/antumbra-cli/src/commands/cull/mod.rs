@@ -29,7 +29,7 @@ use verify::Verdict;
 pub(crate) struct CullArgs {
     #[command(flatten)]
     scene: SceneArgs,
-    /// The camera path: one camera a line, `ex ey ez dx dy dz ux uy uz fovy`
+    /// The camera path: one camera a line, `ex ey ez dx dy dz ux uy uz fovy`, also gzip'd
     #[arg(long, value_name = "FILE")]
     path: PathBuf,
     /// Width over height of the view
@@ -57,7 +57,7 @@ pub(crate) struct CullArgs {
     #[arg(long, value_name = "FILE")]
     top: Option<PathBuf>,
     /// The frame of the top view
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "top")]
     frame: usize,
     /// Write the result as JSON to a file, too
     #[arg(short, long, value_name = "FILE")]
@@ -84,7 +84,11 @@ fn ratio(text: &str) -> Result<f64, String> {
             .filter(|n| n.is_finite() && *n > 0.0)
             .ok_or_else(wrong)
     };
-    Ok(side(w)? / side(h)?)
+    let ratio = side(w)? / side(h)?;
+    let sensible = (1e-3..=1e3).contains(&ratio);
+    sensible.then_some(ratio).ok_or_else(|| {
+        "a view at most 1000 times as wide as high, or as high as wide, is expected".to_owned()
+    })
 }
 
 /// What a frame gave.
@@ -97,11 +101,16 @@ pub(super) struct Frame {
 /// Culls the path, writes what was asked for, prints the frames.
 pub(crate) fn run(args: &CullArgs, global: &Global) -> Result<(), Failure> {
     let inputs = [args.scene.scene.as_path(), args.path.as_path()];
-    for path in [&args.csv, &args.svg, &args.top, &args.output]
-        .into_iter()
-        .flatten()
-    {
+    let outputs = [&args.csv, &args.svg, &args.top, &args.output];
+    let outputs: Vec<&PathBuf> = outputs.into_iter().flatten().collect();
+    for (i, path) in outputs.iter().enumerate() {
         check_writable(path, &inputs)?;
+        if outputs[..i].contains(path) {
+            return Err(Failure::Usage(format!(
+                "{}: two results would be written to this file; give each its own name",
+                path.display()
+            )));
+        }
     }
     let [w, h] = args.size.map(|n| n as f64);
     if args.verify && (w - h * args.aspect).abs() > 1e-6 * w {
