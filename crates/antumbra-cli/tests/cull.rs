@@ -89,9 +89,10 @@ fn no_method_is_wrong_and_threads_change_nothing() {
         "--preset paper --method fme --best 16 --within 9",
         "--preset paper --method fmc",
         "--preset paper --method inner",
-        "--select region --best 40",
+        "--select region --region-best 40",
+        "--select region-only --region-best 40",
         "--order autopartition",
-        "--minimum-cost auto --skip auto --propagate auto --reuse-tree",
+        "--minimum-cost auto --object-cost 0 --skip auto --propagate auto --reuse-tree",
         "--no-updating --no-polygons",
     ] {
         let called = run(options);

@@ -27,7 +27,10 @@ fn no_frame_allocates() {
         CullOptions::paper(Method::Modified(LeafTest::Exact), 32),
         CullOptions::paper(Method::Inner, 32),
         CullOptions {
-            selection: Selection::Region,
+            selection: Selection::Region {
+                occluders: 64,
+                sweep: true,
+            },
             doors: vec![ObjectId(2)],
             ..CullOptions::default()
         },

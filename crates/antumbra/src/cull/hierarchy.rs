@@ -156,8 +156,6 @@ pub(super) struct HierarchyNode {
     pub occluders: (u32, u32),
     /// The objects in the node, in [`Hierarchy::objects`]; none if they are many.
     pub objects: Option<(u32, u32)>,
-    /// How many polygons are in the leaves below, at most.
-    pub cost: u32,
 }
 
 /// See the module.
@@ -288,7 +286,6 @@ impl Builder<'_> {
             items: (0, 0),
             occluders: (0, 0),
             objects: None,
-            cost,
         });
         let kd = self.scene.kd();
         let inner = kd.children(&here).filter(|_| cost > self.leaf_cost);

@@ -23,10 +23,12 @@ mod bound;
 mod camera;
 mod cells;
 mod coherence;
+mod cost;
 mod faces;
 mod fragment;
 mod hierarchy;
 mod options;
+mod region;
 mod select;
 mod sweep;
 mod tree;
@@ -35,16 +37,17 @@ use antumbra_kernel::Grid;
 use antumbra_scene::{KdTree, ObjectId, Scene};
 
 use coherence::{Chance, Memory, Propagation};
+use cost::Costs;
 use faces::{Faces, Lines};
 use hierarchy::Hierarchy;
+use region::Regions;
 use select::Occluders;
 use tree::Tree;
 
 pub use camera::{Camera, CameraError};
 pub use cells::{Cell, CellState};
 pub use options::{
-    Coherence, CullOptions, LeafTest, Method, MinimumCost, Order, Probability, REGION_OCCLUDERS,
-    Selection,
+    Coherence, CullOptions, LeafTest, Method, MinimumCost, Order, Probability, Selection,
 };
 
 /// What a camera may see. Everything else is surely hidden or outside the frustum.
@@ -142,10 +145,12 @@ pub struct Culler {
     skip: Chance,
     propagate: Chance,
     random: u64,
-    /// Mean visits of a node test, and share of tests that hide.
-    cost: (f64, f64),
+    costs: Costs,
+    regions: Regions,
     /// The eye of the tree; none if there is no tree to use again.
     eye: Option<[f64; 3]>,
+    /// The camera of the last frame.
+    rests: Option<Camera>,
 }
 
 /// An object that was not named as a door when the culler was made.
@@ -164,7 +169,7 @@ impl Culler {
     }
 
     /// A culler. Expected time proportional to the polygons, times a logarithm; with
-    /// [`Selection::Region`] also leaves times occluders.
+    /// [`Selection::Region`] also some 8,000 frames.
     #[must_use]
     pub fn with_options(scene: &Scene, options: CullOptions) -> Self {
         let mut lines = Lines::default();
@@ -177,7 +182,7 @@ impl Culler {
                 (first, polygons.len() as u32)
             })
             .collect();
-        let mut occluders = Occluders::new(scene, &mut lines, &options);
+        let occluders = Occluders::new(scene, &mut lines, &options);
         let leaf_polygons = options.leaf_polygons;
         let hierarchy = Hierarchy::new(
             scene,
@@ -186,16 +191,21 @@ impl Culler {
             &occluders.faces,
             leaf_polygons,
         );
-        if options.selection == Selection::Region {
-            occluders.look_around(&hierarchy);
-        }
         let count = occluders.faces.len();
         let objects = scene.objects().len();
         let in_leaf = |node: &hierarchy::HierarchyNode| node.occluders.1 - node.occluders.0;
         let most_in_a_leaf = hierarchy.nodes.iter().map(in_leaf).max().unwrap_or(0) as usize;
-        let most = options.max_occluders.min(count);
+        let regional = match options.selection {
+            Selection::Region { occluders, .. } => Some(occluders),
+            _ => None,
+        };
+        let most = match regional {
+            Some(_) => options.max_occluders.max(region::TRIED),
+            None => options.max_occluders,
+        };
+        let most = most.min(count);
         let coherence = options.coherence;
-        Self {
+        let mut culler = Self {
             grid: *scene.grid(),
             kd: scene.kd().clone(),
             polygons,
@@ -220,12 +230,18 @@ impl Culler {
             skip: Chance::new(coherence.skip),
             propagate: Chance::new(coherence.propagation),
             random: options.seed | 1,
-            cost: (30.0, 0.5),
+            costs: Costs::new(options.minimum_cost, scene, &hierarchy),
+            regions: Regions::default(),
             eye: None,
+            rests: None,
             hierarchy,
             occluders,
             options,
+        };
+        if let Some(occluders) = regional {
+            culler.look_around(occluders);
         }
+        culler
     }
 
     /// What the culler was made with.
@@ -254,8 +270,11 @@ impl Culler {
         if !self.options.doors.contains(&door) || door.index() >= self.open.len() {
             return Err(NotADoor(door));
         }
-        self.open[door.index()] = open;
-        self.eye = None;
+        if self.open[door.index()] != open {
+            self.open[door.index()] = open;
+            // The tree that there is knows the door as it was.
+            self.eye = None;
+        }
         Ok(())
     }
 

@@ -39,13 +39,16 @@ pub enum Selection {
         /// The distance; infinite for all visible leaves.
         distance: f64,
     },
-    /// The `max_occluders` largest area-angles from the middle of the leaf where the eye is, found
-    /// when the culler was made (at most [`REGION_OCCLUDERS`]); outside the scene as `Previous`.
-    Region,
+    /// The ones that hid most from sample points of the region where the eye is, found when the culler
+    /// was made; outside the scene as the others.
+    Region {
+        /// The most occluders of a region.
+        occluders: usize,
+        /// Whether the sweep adds occluders of the leaves that it reaches, as far as they are large
+        /// enough. If not, what is called visible is more, in less time.
+        sweep: bool,
+    },
 }
-
-/// The longest list of occluders of a region.
-pub const REGION_OCCLUDERS: usize = 64;
 
 /// In which order chosen occluders are inserted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,13 +76,15 @@ pub enum Probability {
 pub enum MinimumCost {
     /// Every node is tested.
     None,
-    /// Nodes with fewer polygons count as visible.
+    /// Nodes whose objects have fewer polygons count as visible, and objects with fewer, too [BHS98, 5.3].
     Polygons(u32),
-    /// From the measured cost of a test (visited nodes of the tree) and how often it hides something;
-    /// drawing a polygon costs so many visits.
+    /// A test is made if what it hides on average costs more to draw: from the measured cost of tests
+    /// (visited nodes of the tree, some 3 ns each) and how often they hide something [BHS98, 9].
     Automatic {
-        /// Visits that take as long as drawing a polygon.
-        polygon: f64,
+        /// How many visits take as long as a draw call; 0 if all is drawn at once.
+        object: f64,
+        /// How many visits take as long as drawing a triangle.
+        triangle: f64,
     },
 }
 
@@ -93,7 +98,8 @@ pub struct Coherence {
     pub skip: Option<Probability>,
     /// Visibility propagation along the ropes: the probability to try where it failed before.
     pub propagation: Option<Probability>,
-    /// The occlusion tree is kept as long as the eye rests; it is built without the frustum.
+    /// The occlusion tree is kept as long as the eye rests and no door moves, wherever the head turns;
+    /// its occluders are whole, not cut by the frustum. If the head rests, too, the answer is kept.
     pub reuse_tree: bool,
 }
 

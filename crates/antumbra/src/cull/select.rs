@@ -4,13 +4,13 @@
 //! and the distance D of its middle.
 
 use antumbra_kernel::{Aabb, Point};
-use antumbra_scene::{FusedOccluder, KdBox, Scene, fuse_occluders};
+use antumbra_scene::{FusedOccluder, Scene, fuse_occluders};
 use rustc_hash::FxHashMap;
 
 use super::bound::{dot, sub};
 use super::faces::{Faces, Lines};
-use super::hierarchy::{Bounds, Hierarchy};
-use super::options::{CullOptions, REGION_OCCLUDERS, Selection};
+use super::hierarchy::Bounds;
+use super::options::{CullOptions, Selection};
 
 /// The potential occluders of a scene.
 pub(super) struct Occluders {
@@ -18,8 +18,6 @@ pub(super) struct Occluders {
     pub bounds: Vec<Bounds>,
     /// The object of those that can be switched off.
     pub owners: Vec<Option<u32>>,
-    /// For each leaf of the hierarchy, the best from its middle; empty unless asked for.
-    regions: Vec<Vec<u32>>,
 }
 
 impl Occluders {
@@ -30,7 +28,6 @@ impl Occluders {
             faces: Faces::new(),
             bounds: Vec::new(),
             owners: Vec::new(),
-            regions: Vec::new(),
         };
         for occluder in potential(scene, fused, options) {
             out.faces
@@ -42,33 +39,6 @@ impl Occluders {
             }
         }
         out
-    }
-
-    /// Finds the occluders of all regions. Time: leaves times occluders.
-    pub(super) fn look_around(&mut self, hierarchy: &Hierarchy) {
-        let of_leaf = |(node, cell): (&super::hierarchy::HierarchyNode, &KdBox)| {
-            if node.children.is_some() {
-                return Vec::new();
-            }
-            let cell = Bounds::of(&cell.bounds);
-            let middle = std::array::from_fn(|k| (cell.low[k] + cell.high[k]) * 0.5);
-            let mut best: Vec<(f64, u32)> = (0..self.faces.len() as u32)
-                .map(|o| (self.area_angle(o, middle), o))
-                .collect();
-            keep_largest(&mut best, REGION_OCCLUDERS);
-            best.into_iter().map(|(_, o)| o).collect()
-        };
-        self.regions = hierarchy
-            .nodes
-            .iter()
-            .zip(&hierarchy.cells)
-            .map(of_leaf)
-            .collect();
-    }
-
-    /// The list of a leaf.
-    pub(super) fn region(&self, leaf: u32) -> &[u32] {
-        self.regions.get(leaf as usize).map_or(&[], Vec::as_slice)
     }
 
     /// In steradians, nearly.
@@ -204,6 +174,6 @@ fn potential(
 impl Selection {
     /// Whether occluders are inserted while the hierarchy is swept.
     pub(super) fn sweeps(self) -> bool {
-        self == Self::Sweep
+        matches!(self, Self::Sweep | Self::Region { sweep: true, .. })
     }
 }

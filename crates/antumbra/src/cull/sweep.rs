@@ -6,7 +6,7 @@ use super::bound::snap_eye;
 use super::coherence::{Memory, State};
 use super::fragment::Block;
 use super::hierarchy::Bounds;
-use super::options::{LeafTest, Method, MinimumCost, Order, Selection};
+use super::options::{LeafTest, Method, Order, Selection};
 use super::select::keep_largest;
 use super::tree::ROOT;
 use super::{Camera, CullWork, Culler, Visible};
@@ -36,10 +36,18 @@ impl Culler {
     /// Never panics, never allocates. An eye too far away for exact differences gets what is in the
     /// frustum.
     pub fn cull(&mut self, camera: &Camera) -> &Visible {
+        if self.options.coherence.reuse_tree && self.eye.is_some() && self.rests == Some(*camera) {
+            self.visible.work = CullWork {
+                tree_reused: true,
+                ..CullWork::default()
+            };
+            return &self.visible;
+        }
+        self.rests = Some(*camera);
         self.visible.objects.clear();
         self.visible.work = CullWork::default();
         if self.visible.frame >= u32::MAX - 2 {
-            self.forget();
+            self.start_anew();
         }
         let before = self.first_look;
         self.next_frame();
@@ -57,17 +65,14 @@ impl Culler {
             self.visible.objects.clear();
             self.pass(camera, eye, occluding, Pass::Second);
         }
-        if matches!(
-            self.options.selection,
-            Selection::Previous { .. } | Selection::Region
-        ) {
+        if !self.options.selection.sweeps() {
             self.choose_for_next(eye);
         }
         self.visible.objects.sort_unstable();
         let work = &mut self.visible.work;
         work.occluders = self.planted.len() as u64;
         work.tree_nodes = self.tree.node_count() as u64;
-        self.learn();
+        self.costs.learn();
         &self.visible
     }
 
@@ -78,14 +83,20 @@ impl Culler {
         self.visible.work.tree_visits += self.tree.visits;
     }
 
-    /// Starts again as a new culler does, before the numbers of frames run out. Never between the two
-    /// looks at a frame: the second one asks by number for what the first one saw.
-    fn forget(&mut self) {
+    /// Starts again as a new culler does: before the numbers of frames run out, and after the look
+    /// around. Never between the two looks at a frame: the second one asks by number for what the first
+    /// one saw.
+    pub(super) fn start_anew(&mut self) {
         self.visible.frames.fill(0);
         self.tried.fill(0);
         self.memory.fill(Memory::NEW);
         self.visible.frame = 0;
+        self.visible.objects.clear();
+        self.visible.work = CullWork::default();
         self.first_look = u32::MAX;
+        self.planted.clear();
+        self.chosen.clear();
+        self.eye = None;
     }
 
     fn next_frame(&mut self) {
@@ -110,17 +121,18 @@ impl Culler {
         if self.options.selection.sweeps() {
             self.choose_again();
         }
-        if self.options.selection == Selection::Region
+        if pass == Pass::First
+            && let Selection::Region { .. } = self.options.selection
             && let Some(leaf) = self.hierarchy.leaf_at(eye)
         {
             self.chosen.clear();
-            let list = self.occluders.region(leaf);
+            let nodes = &self.hierarchy.nodes;
+            let list = self.regions.of(leaf, |n| nodes[n as usize].parent);
             let list = &list[..list.len().min(self.options.max_occluders)];
             self.chosen.extend(list.iter().map(|&o| (0.0, o)));
         }
         let marking = self.options.method != Method::Standard;
-        let framed = occluding && !reuse;
-        self.tree.start(eye, &edges, framed, marking);
+        self.tree.start(eye, &edges, occluding, reuse, marking);
         self.planted.clear();
         self.eye = occluding.then_some(eye);
         if !occluding {
@@ -213,7 +225,7 @@ impl Culler {
         if self.hierarchy.nodes.is_empty() {
             return;
         }
-        let minimum = self.minimum_cost();
+        let minimum = self.costs.least();
         self.stack.clear();
         self.stack.push((0, ROOT));
         while let Some((number, mut entry)) = self.stack.pop() {
@@ -255,7 +267,7 @@ impl Culler {
         number: u32,
         eye: [f64; 3],
         (occluding, pass): (bool, Pass),
-        minimum: u32,
+        minimum: [f32; 2],
         entry: &mut u32,
     ) -> (State, bool) {
         let node = &self.hierarchy.nodes[number as usize];
@@ -300,7 +312,7 @@ impl Culler {
             self.visible.work.nodes_skipped += 1;
             return (State::Visible, false);
         }
-        if !occluding || node.cost < minimum {
+        if !occluding || self.costs.of_node(number) < minimum[0] {
             let outside = self.tree.is_outside(&block);
             let state = if outside {
                 State::Outside
@@ -322,7 +334,9 @@ impl Culler {
             }
         }
         self.visible.work.node_tests += 1;
+        let steps = self.tree.steps;
         let hidden = self.hides(&block, entry);
+        self.costs.of_nodes.add(self.tree.steps - steps, hidden);
         self.visible.work.nodes_hidden += u64::from(hidden);
         if was_visible && self.hierarchy.nodes[number as usize].children.is_none() {
             self.skip.learn(!hidden);
@@ -349,10 +363,6 @@ impl Culler {
 
     /// Whether nothing of a box can be seen, by the chosen method.
     fn hides(&mut self, block: &Block, entry: &mut u32) -> bool {
-        let reuse = self.options.coherence.reuse_tree;
-        if reuse && self.tree.is_outside(block) {
-            return true;
-        }
         match self.options.method {
             Method::Frustum => false,
             Method::Standard => self.tree.hides_faces(block),
@@ -367,19 +377,18 @@ impl Culler {
         number: u32,
         eye: [f64; 3],
         (occluding, pass): (bool, Pass),
-        minimum: u32,
+        minimum: [f32; 2],
         entry: u32,
         before: Memory,
     ) {
         let node = &self.hierarchy.nodes[number as usize];
-        let (items, occluders, cost, bounds) =
-            (node.items, node.occluders, node.cost, node.bounds.wide());
+        let (items, occluders, bounds) = (node.items, node.occluders, node.bounds.wide());
+        let cheap = occluding && self.costs.of_node(number) < minimum[0];
         self.seen_leaves.push(number);
         if occluding && self.options.selection.sweeps() {
             self.insert_of_leaf(occluders, bounds, eye);
         }
         let frame = self.visible.frame;
-        let cheap = occluding && cost < minimum;
         let kept = self.options.coherence.skip.is_some() && before.frame + 1 == frame;
         for i in items.0..items.1 {
             let item = self.hierarchy.items[i as usize];
@@ -388,11 +397,20 @@ impl Culler {
                 continue;
             }
             let stays = kept && last + 1 == frame && self.happens(self.skip.value());
-            if stays || cheap || self.shows(i, eye, occluding, entry) {
+            let cheap = cheap || occluding && self.costs.objects[item.object as usize] < minimum[1];
+            if stays || cheap || self.asked(i, eye, occluding, entry) {
                 self.visible.frames[item.object as usize] = frame;
                 self.visible.objects.push(ObjectId(item.object));
             }
         }
+    }
+
+    /// As `shows`, and remembers what it costs.
+    fn asked(&mut self, item: u32, eye: [f64; 3], occluding: bool, entry: u32) -> bool {
+        let steps = self.tree.steps;
+        let shown = self.shows(item, eye, occluding, entry);
+        self.costs.of_items.add(self.tree.steps - steps, !shown);
+        shown
     }
 
     /// Whether something of an item may be seen.
@@ -470,30 +488,6 @@ impl Culler {
                 return;
             }
             memory.close(pass);
-        }
-    }
-
-    fn minimum_cost(&self) -> u32 {
-        match self.options.minimum_cost {
-            MinimumCost::None => 0,
-            MinimumCost::Polygons(n) => n,
-            // A test pays if what it hides, on average, would cost more than the test. Few tests find
-            // little: below a tenth the share would pull itself down.
-            MinimumCost::Automatic { polygon } => {
-                (self.cost.0 / (polygon.max(1e-9) * self.cost.1.max(0.1))).min(1e9) as u32
-            }
-        }
-    }
-
-    /// Updates what tests cost and how often they hide.
-    fn learn(&mut self) {
-        let work = &self.visible.work;
-        let tests = work.node_tests + work.item_tests;
-        if work.node_tests > 0 {
-            let steps = work.tree_steps as f64 / tests as f64;
-            let hidden = work.nodes_hidden as f64 / work.node_tests as f64;
-            self.cost.0 += (steps - self.cost.0) / 8.0;
-            self.cost.1 += (hidden - self.cost.1) / 8.0;
         }
     }
 

@@ -82,7 +82,10 @@ fn an_empty_selection_culls_by_the_frustum_alone() {
     assert_eq!(ids(&mut culler, &look([0.0; 3], X)), [0, 1, 2]);
     let options = CullOptions {
         max_occluders: 0,
-        selection: Selection::Region,
+        selection: Selection::Region {
+            occluders: 64,
+            sweep: true,
+        },
         ..CullOptions::default()
     };
     let mut culler = Culler::with_options(&row(), options);
@@ -119,6 +122,31 @@ fn what_insertion_costs_is_weighed() {
     let (cheap, many) = sums(1);
     assert!(cheap * 2 < dear, "{cheap} visits of {dear}");
     assert!(few <= many, "{few} seen, {many} in haste");
+}
+
+#[test]
+fn an_empty_scene_shows_nothing() {
+    for objects in [vec![], vec![ObjectInput::default()]] {
+        let input = SceneInput {
+            objects,
+            source_name: "empty".into(),
+        };
+        let Ok((scene, _)) = SceneBuilder::new(input).build() else {
+            continue;
+        };
+        let region = CullOptions {
+            selection: Selection::Region {
+                occluders: 64,
+                sweep: true,
+            },
+            ..CullOptions::default()
+        };
+        for options in [CullOptions::default(), CullOptions::tight(), region] {
+            let mut culler = Culler::with_options(&scene, options);
+            assert_eq!(ids(&mut culler, &look([0.0; 3], X)), [0_u32; 0]);
+            assert!(culler.may_see_box([1.0; 3], [2.0; 3]));
+        }
+    }
 }
 
 #[test]
@@ -171,32 +199,6 @@ fn a_moving_box_is_tested_against_the_tree() {
     assert!(culler.may_see_box([-1.0; 3], [1.0; 3]), "around the eye");
     assert!(culler.may_see_box([f64::NAN; 3], [1.0; 3]), "no box");
     assert!(culler.may_see_box([4.0; 3], [f64::INFINITY; 3]), "no box");
-}
-
-#[test]
-fn a_resting_eye_keeps_its_tree() {
-    let coherence = Coherence {
-        reuse_tree: true,
-        ..Coherence::NONE
-    };
-    let mut culler = Culler::with_options(
-        &row(),
-        CullOptions {
-            coherence,
-            ..CullOptions::default()
-        },
-    );
-    let first = ids(&mut culler, &look([0.0; 3], X));
-    assert!(!culler.visible().work().tree_reused);
-    assert_eq!(ids(&mut culler, &look([0.0; 3], X)), first);
-    assert!(culler.visible().work().tree_reused);
-    assert_eq!(
-        ids(&mut culler, &look([0.0; 3], [-1.0, 0.0, 0.0])),
-        [0_u32; 0]
-    );
-    assert!(culler.visible().work().tree_reused);
-    assert_eq!(ids(&mut culler, &look([0.1, 0.0, 0.0], X)), first);
-    assert!(!culler.visible().work().tree_reused);
 }
 
 fn rooms() -> Scene {

@@ -50,6 +50,9 @@ fn judge(
             let size = high[k] - low[k];
             eye[k] = if frame % 8 == 0 {
                 between(low[k] - 0.1 * size, high[k] + 0.1 * size)
+            } else if frame % 8 > 4 {
+                // The head turns, the eye rests.
+                eye[k]
             } else {
                 eye[k] + between(-0.005, 0.005) * size
             };
@@ -125,9 +128,30 @@ fn variants() -> Vec<(&'static str, CullOptions)> {
         (
             "region",
             CullOptions {
-                selection: Selection::Region,
+                selection: Selection::Region {
+                    occluders: 64,
+                    sweep: true,
+                },
                 ..standard()
             },
+        ),
+        (
+            "region only",
+            CullOptions {
+                selection: Selection::Region {
+                    occluders: 64,
+                    sweep: false,
+                },
+                ..standard()
+            },
+        ),
+        (
+            "reused tree",
+            coherent(Coherence {
+                updating: true,
+                reuse_tree: true,
+                ..Coherence::NONE
+            }),
         ),
         (
             "autopartition",
@@ -139,7 +163,10 @@ fn variants() -> Vec<(&'static str, CullOptions)> {
         (
             "automatic cost",
             CullOptions {
-                minimum_cost: MinimumCost::Automatic { polygon: 2.0 },
+                minimum_cost: MinimumCost::Automatic {
+                    object: 0.0,
+                    triangle: 2.0,
+                },
                 ..standard()
             },
         ),

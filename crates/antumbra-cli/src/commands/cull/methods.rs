@@ -24,15 +24,24 @@ pub(super) struct MethodArgs {
     /// The most occluders of a frame
     #[arg(long, value_name = "N")]
     best: Option<usize>,
+    /// The most occluders found for a region
+    #[arg(long, value_name = "N", default_value_t = 128)]
+    region_best: usize,
     /// The smallest area-angle of an occluder, in steradians
     #[arg(long, value_name = "SR", value_parser = crate::values::positive)]
     min_angle: Option<f64>,
     /// In which order occluders are inserted
     #[arg(long, value_enum, value_name = "ORDER")]
     order: Option<OrderArg>,
-    /// Nodes with fewer polygons are not tested: a number, or `auto`
+    /// Nodes whose objects have fewer polygons are not tested: a number, or `auto`, by what drawing and tests cost
     #[arg(long, value_name = "N", value_parser = minimum)]
     minimum_cost: Option<MinimumCost>,
+    /// With `--minimum-cost auto`: drawing an object costs as much as so many visited tree nodes, some 3 ns each
+    #[arg(long, value_name = "N", default_value_t = 300.0, value_parser = cost, requires = "minimum_cost")]
+    object_cost: f64,
+    /// The same of each of its triangles
+    #[arg(long, value_name = "N", default_value_t = 2.0, value_parser = cost, requires = "minimum_cost")]
+    triangle_cost: f64,
     /// Test every node in every frame
     #[arg(long)]
     no_updating: bool,
@@ -88,8 +97,10 @@ enum SelectArg {
     Sweep,
     /// The largest area-angles in leaves seen before
     Previous,
-    /// The largest area-angles of the region, found beforehand
+    /// The occluders of the region, found beforehand, then whatever the sweep meets
     Region,
+    /// The occluders of the region alone
+    RegionOnly,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -100,6 +111,13 @@ enum OrderArg {
     Prominence,
     /// By an autopartition BSP
     Autopartition,
+}
+
+fn cost(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(cost) if cost.is_finite() && cost >= 0.0 => Ok(cost),
+        _ => Err("expected a number that is not negative".to_owned()),
+    }
 }
 
 fn probability(text: &str) -> Result<Probability, String> {
@@ -114,8 +132,11 @@ fn probability(text: &str) -> Result<Probability, String> {
 
 fn minimum(text: &str) -> Result<MinimumCost, String> {
     if text == "auto" {
-        // An object's polygons cost a draw call, too: as if each took as long as eight nodes here.
-        return Ok(MinimumCost::Automatic { polygon: 8.0 });
+        // What the costs are is said by other options.
+        return Ok(MinimumCost::Automatic {
+            object: 0.0,
+            triangle: 0.0,
+        });
     }
     text.parse()
         .map(MinimumCost::Polygons)
@@ -147,7 +168,12 @@ impl MethodArgs {
         let distance = self.within.unwrap_or(f64::INFINITY);
         match self.select {
             Some(SelectArg::Sweep) => options.selection = Selection::Sweep,
-            Some(SelectArg::Region) => options.selection = Selection::Region,
+            Some(region @ (SelectArg::Region | SelectArg::RegionOnly)) => {
+                options.selection = Selection::Region {
+                    occluders: self.region_best,
+                    sweep: region == SelectArg::Region,
+                };
+            }
             Some(SelectArg::Previous) => options.selection = Selection::Previous { distance },
             None if self.within.is_some() => {
                 options.selection = Selection::Previous { distance };
@@ -162,7 +188,14 @@ impl MethodArgs {
         }
         options.max_occluders = self.best.unwrap_or(options.max_occluders);
         options.min_angle = self.min_angle.unwrap_or(options.min_angle);
-        options.minimum_cost = self.minimum_cost.unwrap_or(options.minimum_cost);
+        options.minimum_cost = match self.minimum_cost {
+            Some(MinimumCost::Automatic { .. }) => MinimumCost::Automatic {
+                object: self.object_cost,
+                triangle: self.triangle_cost,
+            },
+            Some(given) => given,
+            None => options.minimum_cost,
+        };
         options.polygons &= !self.no_polygons;
         let coherence = &mut options.coherence;
         coherence.updating &= !self.no_updating;

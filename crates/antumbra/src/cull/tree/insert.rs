@@ -11,7 +11,7 @@
 
 use super::super::bound::{MAX_DEPTH, dot, plane_through_eye};
 use super::super::fragment::WALL;
-use super::{Blocker, Face, LEAF, NO_LINE, OPEN, OUTSIDE, Origin, Shell, Tree};
+use super::{Blocker, Face, LEAF, NO_LINE, OPEN, OUTSIDE, Origin, ROOT, Shell, Tree};
 
 impl Tree {
     /// Inserts an occluder; whether it blocks any leaf now.
@@ -66,7 +66,9 @@ impl Tree {
         });
         self.hits.push(0);
         self.way.clear();
-        let planted = self.descend(face, NO_LINE, 0, 0);
+        // The planes of the frustum are on the way of what is tested, if not of the occluder.
+        let depth = if self.base == ROOT { 0 } else { 4 };
+        let planted = self.descend(face, self.base, 0, depth);
         if !planted {
             self.blockers.pop();
             self.hits.pop();

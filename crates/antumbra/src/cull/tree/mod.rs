@@ -131,6 +131,8 @@ pub(super) struct Tree {
     root: u32,
     /// Nodes of the frustum at the start.
     frame: u32,
+    /// Where occluders are inserted: at the root, as far as they are in the frustum, or whole below it.
+    base: u32,
     blockers: Vec<Blocker>,
     /// Corners of the blockers, relative to the eye.
     corners: Vec<[f64; 3]>,
@@ -169,6 +171,7 @@ impl Tree {
             way: Vec::with_capacity(MAX_DEPTH),
             root: OPEN,
             frame: 0,
+            base: ROOT,
             blockers: Vec::with_capacity(max_blockers),
             corners: Vec::with_capacity(max_blockers * 8),
             axes: Vec::with_capacity(max_blockers * 30),
@@ -187,12 +190,13 @@ impl Tree {
     }
 
     /// Empties the tree, for an eye and a frustum: the planes of neighboring edges point inward. A
-    /// framed tree calls invisible what is outside.
+    /// framed tree calls invisible what is outside. One that can be turned takes occluders whole.
     pub(super) fn start(
         &mut self,
         eye: [f64; 3],
         edges: &[[f64; 3]; 4],
         framed: bool,
+        turning: bool,
         marking: bool,
     ) {
         self.eye = eye;
@@ -206,6 +210,7 @@ impl Tree {
         self.axes.clear();
         self.hits.clear();
         self.root = OPEN;
+        self.base = ROOT;
         self.turn(edges);
         let mut parent = ROOT;
         for i in 0..if framed { 4 } else { 0 } {
@@ -214,9 +219,12 @@ impl Tree {
             parent = 2 * node + 1;
         }
         self.frame = self.nodes.len() as u32;
+        if turning {
+            self.base = parent;
+        }
     }
 
-    /// Changes the frustum of a tree that is not framed, and starts to count anew.
+    /// Changes the frustum of a tree whose occluders are whole, and starts to count anew.
     pub(super) fn turn(&mut self, edges: &[[f64; 3]; 4]) {
         // The four sides, and what is behind the eye: straight ahead is the sum of the edges.
         let ahead: [f64; 3] = std::array::from_fn(|k| edges.iter().map(|e| e[k]).sum());
@@ -225,6 +233,9 @@ impl Tree {
             4 => ahead,
             _ => plane_through_eye(edges[i], edges[(i + 1) % 4]),
         });
+        for (node, plane) in self.nodes.iter_mut().zip(self.frustum).take(4) {
+            node.plane = plane;
+        }
         self.hits.fill(0);
         self.used.fill(false);
         self.steps = 0;
