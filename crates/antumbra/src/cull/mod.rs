@@ -147,6 +147,8 @@ pub struct Culler {
     random: u64,
     costs: Costs,
     regions: Regions,
+    /// Visits before the sweep if occluders of a region are given: they are not weighed.
+    given: u64,
     /// The eye of the tree; none if there is no tree to use again.
     eye: Option<[f64; 3]>,
     /// The camera of the last frame.
@@ -232,6 +234,7 @@ impl Culler {
             random: options.seed | 1,
             costs: Costs::new(options.minimum_cost, scene, &hierarchy),
             regions: Regions::default(),
+            given: 0,
             eye: None,
             rests: None,
             hierarchy,

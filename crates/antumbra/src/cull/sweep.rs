@@ -78,6 +78,8 @@ impl Culler {
 
     fn pass(&mut self, camera: &Camera, eye: [f64; 3], occluding: bool, pass: Pass) {
         self.start_tree(camera, eye, occluding, pass);
+        let regional = matches!(self.options.selection, Selection::Region { .. });
+        self.given = if regional { self.tree.visits } else { 0 };
         self.sweep(eye, occluding, pass);
         self.visible.work.tree_steps += self.tree.steps;
         self.visible.work.tree_visits += self.tree.visits;
@@ -122,14 +124,22 @@ impl Culler {
             self.choose_again();
         }
         if pass == Pass::First
-            && let Selection::Region { .. } = self.options.selection
+            && let Selection::Region { sweep, .. } = self.options.selection
             && let Some(leaf) = self.hierarchy.leaf_at(eye)
         {
-            self.chosen.clear();
+            if !sweep {
+                self.chosen.clear();
+            }
+            let frame = self.visible.frame;
+            for &(_, occluder) in &self.chosen {
+                self.tried[occluder as usize] = frame;
+            }
             let nodes = &self.hierarchy.nodes;
             let list = self.regions.of(leaf, |n| nodes[n as usize].parent);
             let list = &list[..list.len().min(self.options.max_occluders)];
-            self.chosen.extend(list.iter().map(|&o| (0.0, o)));
+            let tried = &self.tried;
+            let more = list.iter().filter(|&&o| tried[o as usize] != frame);
+            self.chosen.extend(more.map(|&o| (0.0, o)));
         }
         let marking = self.options.method != Method::Standard;
         self.tree.start(eye, &edges, occluding, reuse, marking);
@@ -442,7 +452,7 @@ impl Culler {
     fn min_angle(&self) -> f64 {
         let seen = self.visible.objects.len().min(60) as f64;
         let calm = self.options.calm_visits as f64 * (1.0 + seen / 4.0);
-        let excess = (self.tree.visits as f64 / calm).max(1.0);
+        let excess = ((self.tree.visits - self.given) as f64 / calm).max(1.0);
         self.options.min_angle * excess.powi(5)
     }
 
