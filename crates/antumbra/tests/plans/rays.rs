@@ -161,6 +161,9 @@ pub(crate) fn first(
     cell: &CellShape,
 ) -> Result<Option<(usize, [IBig; 2])>, String> {
     let corners: Vec<GridPoint> = cell.corners().iter().map(|&c| grid(c)).collect();
+    if let CellShape::Region(_) = cell {
+        return first_on_line(scene.segments(), line, &corners);
+    }
     let apart = |[p, q]: [GridPoint; 2]| match cell {
         CellShape::Region(_) => true,
         CellShape::Segment(_) => [p, q]
