@@ -3,9 +3,9 @@
 //! After [Bittner02, 6.5.3]: a target is a virtual segment, or the sides of a region through which lines enter
 //! it. It is not inserted, and what lies along it does not hide it.
 
-use antumbra_kernel::{Point2, Rect};
+use antumbra_kernel::{Point2, Rect, orient2d};
 use antumbra_lines::SegmentOccluder;
-use antumbra_scene::plan::{CellShape, Plan};
+use antumbra_scene::plan::{CellShape, PieceId, Plan};
 
 use super::answer::unblocked;
 use super::line::PlanLine;
@@ -25,7 +25,8 @@ pub enum Sight {
 
 /// For each target whether it is seen from a cell. Exact; one sweep.
 ///
-/// Two points see each other if no closed segment meets the segment between them.
+/// Two points see each other if no closed segment meets the segment between them, but for those that hold one of the
+/// points and those in line with both, which are seen edge-on.
 #[must_use]
 pub fn sights(plan: &Plan, from: &CellShape, targets: &[CellShape]) -> Vec<Option<Sight>> {
     let how = How {
@@ -103,9 +104,12 @@ fn between_points(plan: &Plan, p: Point2, q: Point2) -> Option<Sight> {
     }
     let around = Rect::around([p, q])?;
     let segment = CellShape::Segment([p, q]);
-    let blocked = plan
-        .pieces_in(&around)
-        .into_iter()
-        .any(|id| plan.occludes(id) && segment.meets_segment(plan.pieces()[id.0 as usize]));
+    let blocks = |id: PieceId| {
+        let piece = plan.pieces()[id.0 as usize];
+        let holds = |p: Point2| CellShape::Point(p).meets_segment(piece);
+        let in_line = piece.iter().all(|&e| orient2d(p, q, e) == 0);
+        plan.occludes(id) && segment.meets_segment(piece) && !in_line && !holds(p) && !holds(q)
+    };
+    let blocked = plan.pieces_in(&around).into_iter().any(blocks);
     (!blocked).then(|| Sight::Line(PlanLine::through(p, q)))
 }

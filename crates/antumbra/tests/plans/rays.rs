@@ -40,7 +40,7 @@ pub(crate) fn seen(view: &PlanView) -> Seen {
 }
 
 /// A random grid point of the closed cell, and how often the draw failed.
-fn inside(cell: &CellShape, random: &mut Random) -> Option<GridPoint> {
+pub(crate) fn inside(cell: &CellShape, random: &mut Random) -> Option<GridPoint> {
     let corners = cell.corners();
     let bounds = cell.bounds();
     match cell {
