@@ -348,17 +348,14 @@ impl LineSpace for Space3 {
     fn cut(&mut self, mut piece: Cone3, plane: Plane3, wall: Wall) -> Cut<Cone3> {
         let mut signs = std::mem::take(&mut self.signs);
         signs.clear();
-        let (mut negative, mut zero, mut positive) = (false, false, false);
-        let mut exact_signs = 0;
-        signs.extend(piece.corners.iter().map(|corner| {
+        let mut found = [false; 3];
+        for corner in &piece.corners {
             let (sign, exact) = self.side(plane, &corner.ray);
-            exact_signs += u64::from(exact);
-            negative |= sign.is_negative();
-            zero |= sign.is_zero();
-            positive |= sign.is_positive();
-            sign
-        }));
-        self.exact_signs += exact_signs;
+            self.exact_signs += u64::from(exact);
+            found[(sign.to_i8() + 1) as usize] = true;
+            signs.push(sign);
+        }
+        let [negative, zero, positive] = found;
         let cut = if negative && positive {
             let parts = self.parts(&piece, plane, wall, &signs);
             self.discard(piece);
@@ -388,28 +385,34 @@ impl LineSpace for Space3 {
 impl Space3 {
     /// Both parts of a cone that has rays strictly on both sides.
     fn parts(&mut self, piece: &Cone3, plane: Plane3, wall: Wall, signs: &[Sign]) -> [Cone3; 2] {
-        let mut parts = [(); 2].map(|()| self.spare.pop().unwrap_or_default());
+        let mut parts = [
+            self.spare.pop().unwrap_or_default(),
+            self.spare.pop().unwrap_or_default(),
+        ];
         parts.iter_mut().for_each(Vec::clear);
-        let nexts = signs[1..].iter().chain(&signs[..1]);
-        for ((corner, &here), &next) in piece.corners.iter().zip(signs).zip(nexts) {
-            let half = match here {
-                Sign::Negative => Half::Negative,
-                Sign::Positive => Half::Positive,
-                Sign::Zero => {
-                    for half in [Half::Negative, Half::Positive] {
-                        let goes_on = next == half.sign();
-                        let cut = on_cut(corner.ray, plane, half, wall);
-                        parts[half.index()].push(if goes_on { *corner } else { cut });
-                    }
-                    continue;
+        let n = piece.corners.len();
+        for i in 0..n {
+            let corner = &piece.corners[i];
+            let (here, next) = (signs[i], signs[(i + 1) % n]);
+            let crossing = here.times(next).is_negative();
+            for half in [Half::Negative, Half::Positive] {
+                let part = &mut parts[half.index()];
+                let inside = half.sign();
+                if here == inside || (here.is_zero() && next == inside) {
+                    part.push(*corner);
+                } else if here.is_zero() {
+                    part.push(on_cut(corner.ray, plane, half, wall));
                 }
-            };
-            parts[half.index()].push(*corner);
-            let other = half.opposite();
-            if next == other.sign() {
+            }
+            if crossing {
                 let ray = self.crossing(corner, plane, here);
-                parts[half.index()].push(on_cut(ray, plane, half, wall));
-                parts[other.index()].push(Corner3 { ray, ..*corner });
+                let leaving = if here.is_positive() {
+                    Half::Positive
+                } else {
+                    Half::Negative
+                };
+                parts[leaving.index()].push(on_cut(ray, plane, leaving, wall));
+                parts[leaving.opposite().index()].push(Corner3 { ray, ..*corner });
             }
         }
         parts.map(|corners| Cone3 { corners })

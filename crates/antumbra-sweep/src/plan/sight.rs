@@ -10,7 +10,7 @@ use antumbra_scene::plan::{CellShape, PieceId, Plan};
 use super::answer::unblocked;
 use super::line::PlanLine;
 use super::point::PointLines;
-use super::region::RegionLines;
+use super::region::{RegionLines, windows};
 use super::sweep::{How, Source, Swept, sweep};
 use crate::occlusion::{BoxTest, SweepOrder};
 
@@ -41,7 +41,7 @@ pub fn sights(plan: &Plan, from: &CellShape, targets: &[CellShape]) -> Vec<Optio
             let grazing = vec![swept.source.grazing.clone()];
             let one = |to: &CellShape| match to {
                 CellShape::Point(p) => between_points(plan, *eye, *p),
-                _ => sight(&mut swept, &grazing, from, to),
+                _ => sight(plan, &mut swept, &grazing, from, to),
             };
             targets.iter().map(one).collect()
         }
@@ -52,7 +52,7 @@ pub fn sights(plan: &Plan, from: &CellShape, targets: &[CellShape]) -> Vec<Optio
             let one = |to: &CellShape| match to {
                 // Lines through a point are an open set only as seen from the point.
                 CellShape::Point(_) => sights(plan, to, std::slice::from_ref(from)).pop().flatten(),
-                _ => sight(&mut swept, &grazing, from, to),
+                _ => sight(plan, &mut swept, &grazing, from, to),
             };
             targets.iter().map(one).collect()
         }
@@ -60,6 +60,7 @@ pub fn sights(plan: &Plan, from: &CellShape, targets: &[CellShape]) -> Vec<Optio
 }
 
 fn sight<S: Source>(
+    plan: &Plan,
     swept: &mut Swept<S>,
     grazing: &[Vec<Point2>],
     from: &CellShape,
@@ -70,13 +71,12 @@ fn sight<S: Source>(
     }
     let corners = to.corners();
     let mut blockers = Vec::new();
-    let n = corners.len();
-    let sides = if n == 2 { 1 } else { n };
-    for i in 0..sides {
-        let ends = [corners[i], corners[(i + 1) % n]];
+    // Lines enter a region where they could leave it, too: not through walls along its sides.
+    let sides = windows(plan, to).into_iter().map(|w| [w.a, w.b]);
+    for side in sides.take(if corners.len() == 2 { 1 } else { usize::MAX }) {
         swept
             .source
-            .blockers(ends, SegmentOccluder::TARGET, &mut blockers);
+            .blockers(side, SegmentOccluder::TARGET, &mut blockers);
     }
     let mut found = None;
     for blocker in blockers {
