@@ -26,6 +26,24 @@ fn fragments(result: &Value, id: u64) -> Value {
     found.map_or(Value::Null, |v| v["fragments"].clone())
 }
 
+/// Neither of two cells sees through a wall along the side of the other, whichever is asked first.
+#[test]
+fn walls_along_cells_hide_both_ways() {
+    let folder = folder();
+    let square = |x: f64, y: f64, size: f64| {
+        let (u, v) = (x + size, y + size);
+        serde_json::json!({"type": "Feature", "properties": {}, "geometry": {"type": "Polygon",
+            "coordinates": [[[x, y], [u, y], [u, v], [x, v], [x, y]]]}})
+    };
+    let (room, outside) = (square(0.0, 0.0, 10.0), square(20.0, 3.0, 2.0));
+    for features in [[&room, &outside], [&outside, &room]] {
+        let cells = serde_json::json!({"type": "FeatureCollection", "features": features});
+        folder.write("cells.json", cells.to_string());
+        let found = folder.run("plan room.seg --cells cells.json --matrix --json -q");
+        assert_eq!(found.json()["pairs"], 0);
+    }
+}
+
 #[test]
 fn a_screen_hides_a_part_of_a_wall() {
     let folder = folder();
@@ -161,6 +179,11 @@ fn batches_matrices_and_pictures() {
         assert!(svg.contains(&format!("id=\"{id}\"")), "{id}");
     }
     assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    // A point is drawn as a mark that can be seen.
+    plan(&folder, "room.seg", "5,5", &["--svg", "p.svg"]).done();
+    let svg = String::from_utf8(folder.bytes("p.svg")).expect("text");
+    let mark = svg.split("id=\"cell\"").nth(1).expect("a cell");
+    assert_eq!(mark.matches(" L").count(), 3, "{mark}");
     let lines = String::from_utf8(folder.bytes("l.svg")).expect("text");
     assert!(lines.contains("funnel-0") && !lines.contains("NaN"));
     let drawn: Value = serde_json::from_slice(&folder.bytes("g.json")).expect("JSON");
@@ -194,6 +217,128 @@ fn batches_matrices_and_pictures() {
     assert_eq!(seen["verdict"], "visible");
 }
 
+/// A house of 111 x 74 m by longitude and latitude, and what is asked of it in degrees.
+#[test]
+fn degrees_are_projected_and_come_back_as_degrees() {
+    let folder = Folder::new();
+    let house = [
+        [14.30, 48.30],
+        [14.301, 48.30],
+        [14.301, 48.301],
+        [14.30, 48.301],
+        [14.30, 48.30],
+    ];
+    folder.write(
+        "house.geojson",
+        serde_json::json!({"type": "LineString", "coordinates": house}).to_string(),
+    );
+    let cell = serde_json::json!({"type": "Point", "coordinates": [14.3005, 48.3004]});
+    folder.write("cells.geojson", cell.to_string());
+    let run = folder.run("plan house.geojson --cell 14.3005,48.3004 --to 14.3,48.3002 --json");
+    assert!(
+        run.stderr
+            .contains("projected to metres around (14.3005, 48.3005)")
+    );
+    assert_eq!(run.json()["verdict"], "visible");
+    let seen = folder
+        .run("plan house.geojson --cell 14.3005,48.3004 --isovist --geojson seen.geojson --json -q")
+        .json();
+    assert_eq!(
+        seen["projected_around"],
+        serde_json::json!([14.3005, 48.3005])
+    );
+    assert_eq!(seen["visible"].as_array().map(Vec::len), Some(4));
+    let area = seen["isovist"]["area"].as_f64().expect("a number");
+    assert!((area / (74.18 * 111.2) - 1.0).abs() < 1e-3, "{area}");
+    assert_eq!(seen["isovist"]["open"], false);
+    let drawn: Value = serde_json::from_slice(&folder.bytes("seen.geojson")).expect("JSON");
+    let features = drawn["features"].as_array().expect("a list");
+    for (i, feature) in features[..4].iter().enumerate() {
+        let line = &feature["geometry"]["coordinates"][0];
+        for (k, end) in house[i..i + 2].iter().enumerate() {
+            for axis in 0..2 {
+                let found = line[k][axis].as_f64().expect("a number");
+                assert!((found - end[axis]).abs() < 1e-9, "{line}");
+            }
+        }
+    }
+    let corner = &features[4]["geometry"]["coordinates"][0][0][0];
+    assert!((corner[0].as_f64().expect("a number") - 14.3005).abs() < 0.001);
+    let cells = folder.run("plan house.geojson --cells cells.geojson --json -q");
+    assert_eq!(cells.json()["cells"][0]["visible"], seen["visible"]);
+    // Lengths, if that is said.
+    let planar = folder.run("plan house.geojson --crs planar --cell 14.3005,48.3004 --json -q");
+    assert_eq!(planar.json()["projected_around"], Value::Null);
+}
+
+/// A cell in the shape of an L sees what its parts see together.
+#[test]
+fn a_cell_that_is_not_convex_sees_what_its_parts_see() {
+    let folder = Folder::new();
+    folder
+        .run("gen random-segments --count 300 --seed 5 -o a.seg")
+        .done();
+    let ids = |cell: &str| -> Vec<u64> {
+        let seen = plan(&folder, "a.seg", cell, &["--check"]).json();
+        let list = seen["visible"].as_array().expect("a list");
+        list.iter().filter_map(|v| v["id"].as_u64()).collect()
+    };
+    let whole = ids("20,20 60,20 60,24 24,24 24,70 20,70");
+    let mut parts = ids("20,20 60,20 60,24 20,24");
+    parts.extend(ids("20,20 24,20 24,70 20,70"));
+    parts.sort_unstable();
+    parts.dedup();
+    assert_eq!(whole, parts);
+}
+
+/// Files of a batch are equal byte for byte, whatever the threads.
+#[test]
+fn batches_do_not_depend_on_threads() {
+    let Some(data) = antumbra_testkit::environment::data() else {
+        antumbra_testkit::environment::skip("no measured data");
+        return;
+    };
+    let folder = Folder::new();
+    let city = data.join("city/linz_1km2.geojson.gz").display().to_string();
+    let cells = std::fs::read_to_string(data.join("city/linz_8km2_viewcells.geojson"));
+    let mut cells: Value = serde_json::from_str(&cells.expect("cells")).expect("JSON");
+    let features = cells["features"].as_array_mut().expect("a list");
+    features.truncate(24);
+    folder.write("cells.json", cells.to_string());
+    let bytes = |threads: &str| -> Vec<Vec<u8>> {
+        let run = folder.run_args(
+            &[
+                "plan",
+                &city,
+                "--cells",
+                "cells.json",
+                "--threads",
+                threads,
+                "--geojson",
+                "g.json",
+                "-o",
+                "f.json",
+                "--svg",
+                "a.svg",
+                "--line-space",
+                "l.svg",
+                "--json",
+                "-q",
+            ],
+            b"",
+        );
+        let mut said = run.json();
+        assert_eq!(said["cells"].as_array().map(Vec::len), Some(24));
+        for key in ["seconds", "load_seconds", "build_seconds", "write_seconds"] {
+            said[key] = Value::Null;
+        }
+        let names = ["g.json", "f.json", "a.svg", "l.svg"];
+        let files = names.map(|name| folder.bytes(name)).into_iter();
+        files.chain([said.to_string().into_bytes()]).collect()
+    };
+    assert!(bytes("1") == bytes("3"));
+}
+
 #[test]
 fn bad_plans_and_cells_are_refused_with_their_place() {
     let folder = folder();
@@ -204,6 +349,16 @@ fn bad_plans_and_cells_are_refused_with_their_place() {
     folder.write("word.seg", "0 0 1 1\n0 0 one 1\n");
     folder.write("path.svg", "<svg>\n<path d=\"M 0 0 L 4 x\"/>\n</svg>");
     folder.write("half.dxf", "0\nSECTION\n2\nENTITIES\n0\nLINE\n");
+    folder.write(
+        "nan.geojson",
+        r#"{"type":"LineString","coordinates":[[0,0],["a",1]]}"#,
+    );
+    folder.write("unit.svg", "<svg>\n<line x2=\"5mm\"/>\n</svg>");
+    folder.write("open.svg", "<svg>\n<g>");
+    folder.write(
+        "none.dxf",
+        "0\nSECTION\n2\nENTITIES\n0\nINSERT\n2\nnone\n0\nENDSEC\n0\nEOF\n",
+    );
     folder.write("empty.seg", "");
     folder.write("bytes.seg", b"\xff\xfe\x00\x01");
     for (file, code, says) in [
@@ -211,7 +366,15 @@ fn bad_plans_and_cells_are_refused_with_their_place() {
         ("cut.geojson", 3, "JSON line 1"),
         ("word.seg", 3, "line 2: `one` is not a number"),
         ("path.svg", 3, "line 2: the path data is damaged"),
-        ("half.dxf", 3, "stops before its end"),
+        ("half.dxf", 3, "line 6: the drawing stops before its end"),
+        ("nan.geojson", 3, "JSON line 1, column 46: invalid type"),
+        ("unit.svg", 3, "line 2: `5mm` is not a number of user units"),
+        (
+            "open.svg",
+            3,
+            "line 1: the root node was opened but never closed",
+        ),
+        ("none.dxf", 3, "there is no block `none` for the insert "),
         ("empty.seg", 3, "the file is empty"),
         ("bytes.seg", 3, "byte 0: this is not text"),
     ] {

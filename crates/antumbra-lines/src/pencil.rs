@@ -16,10 +16,12 @@ use crate::line_space::{Cut, DepthSpace, Facet, Half, LineSpace, Occluder, Order
 pub struct Direction(u32);
 
 /// A direction by its components.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray2 {
     /// Exact components, below 2^80 in magnitude.
     pub exact: [i128; 2],
+    /// The same, rounded, for filters.
+    rounded: [f64; 2],
 }
 
 /// The directions from one ray to another, less than a half turn to its left.
@@ -41,10 +43,25 @@ pub struct Pencil {
 }
 
 impl Ray2 {
+    fn new(exact: [i128; 2]) -> Self {
+        Self {
+            exact,
+            rounded: exact.map(|c| c as f64),
+        }
+    }
+
+    fn opposite(&self) -> Self {
+        Self {
+            exact: self.exact.map(|c| -c),
+            rounded: self.rounded.map(|c| -c),
+        }
+    }
+
     /// The components in doubles.
+    #[inline]
     #[must_use]
     pub fn rounded(&self) -> [f64; 2] {
-        self.exact.map(|c| c as f64)
+        self.rounded
     }
 }
 
@@ -85,9 +102,7 @@ impl Pencil {
     /// The direction to a point with homogeneous coordinates and positive weight.
     fn toward(&self, [x, y, w]: [i128; 3]) -> Ray2 {
         let [ex, ey] = self.eye.to_i64().map(i128::from);
-        Ray2 {
-            exact: [x - ex * w, y - ey * w],
-        }
+        Ray2::new([x - ex * w, y - ey * w])
     }
 
     fn plane(&mut self, ray: Ray2) -> Direction {
@@ -100,6 +115,7 @@ impl Pencil {
     pub fn ray(&self, components: [i64; 2]) -> Ray2 {
         Ray2 {
             exact: components.map(i128::from),
+            rounded: components.map(|c| c as f64),
         }
     }
 
@@ -192,7 +208,7 @@ impl LineSpace for Pencil {
         // The ray of the cut lies between the two, so it or its opposite does.
         let mut ray = self.directions[plane.0 as usize];
         if !turn(&piece.rays[0], &ray).is_positive() || !turn(&ray, &piece.rays[1]).is_positive() {
-            ray.exact = ray.exact.map(|c| -c);
+            ray = ray.opposite();
         }
         let (mut right, mut left) = (piece, piece);
         right.rays[1] = ray;

@@ -318,6 +318,7 @@ pub fn first_on_line(
             // A crossing of two segments belongs to neither.
             if let Some((_, b)) = &best
                 && !before(&at, b)
+                && touched.as_ref().is_none_or(|(t, _)| before(&at, t))
             {
                 touched = Some((at.clone(), i));
             }
@@ -377,5 +378,13 @@ mod tests {
         let up = first_on_line(&segments, &line(-1, 0, 2), &cell).expect("a witness");
         assert_eq!(up, None);
         assert!(first_on_line(&segments, &line(0, 1, -9), &cell).is_err());
+        // What it touches first counts, whatever crosses it in one point farther away.
+        let segments = [
+            [[4, 2], [6, 9]],
+            [[8, 0], [10, 4]],
+            [[10, 0], [8, 4]],
+            [[7, -9], [7, 9]],
+        ];
+        assert!(first_on_line(&segments, &line(0, 1, -2), &cell).is_err());
     }
 }

@@ -15,11 +15,12 @@ use crate::error::{Damage, Place};
 
 /// Blocks inserted within blocks at most.
 const NESTED: u32 = 16;
-/// Entities drawn at most: blocks may multiply a small file without end.
-const ENTITIES: u32 = 4_000_000;
+/// Entities drawn, or segments of them, at most: blocks may multiply a small file without end.
+const ENTITIES: usize = 4_000_000;
 
 pub(super) fn read(text: &str) -> Result<PlanInput, Damage> {
-    let drawing = Drawing::load(&mut text.as_bytes()).map_err(|e| damage(&e))?;
+    let drawing =
+        Drawing::load(&mut text.as_bytes()).map_err(|e| damage(&e, text.lines().count()))?;
     let blocks = drawing.blocks().map(|b| (b.name.as_str(), b)).collect();
     let off = drawing
         .layers()
@@ -60,7 +61,8 @@ pub(super) fn read(text: &str) -> Result<PlanInput, Damage> {
     Ok(plan)
 }
 
-fn damage(error: &DxfError) -> Damage {
+/// `lines` is how many there are: where a drawing ends that stops too soon.
+fn damage(error: &DxfError, lines: usize) -> Damage {
     let line = match error {
         DxfError::ParseFloatError(_, at)
         | DxfError::ParseIntError(_, at)
@@ -71,6 +73,7 @@ fn damage(error: &DxfError) -> Damage {
         | DxfError::ExpectedTableType(at)
         | DxfError::WrongValueType(at) => Some(*at),
         DxfError::UnexpectedCodePair(pair, _) => Some(pair.offset),
+        DxfError::UnexpectedEndOfInput => Some(lines),
         _ => None,
     };
     let said = match error {
@@ -101,7 +104,7 @@ struct Reader<'a> {
     plan: PlanInput,
     blocks: HashMap<&'a str, &'a dxf::Block>,
     off: std::collections::HashSet<&'a str>,
-    drawn: u32,
+    drawn: usize,
     left_out: u32,
     curves: u32,
 }
@@ -118,7 +121,8 @@ impl<'a> Reader<'a> {
             return Ok(());
         }
         if let EntityType::Insert(insert) = &entity.specific {
-            return self.insert(insert, layer, context);
+            let name = entity.common.handle.as_string();
+            return self.insert((insert, &name), layer, context);
         }
         let Some(Drawn { points, curved }) = lines(&entity.specific) else {
             self.left_out += 1;
@@ -148,19 +152,19 @@ impl<'a> Reader<'a> {
     /// Counts an entity or an inserted block.
     fn count(&mut self) -> Result<(), Damage> {
         self.drawn += 1;
-        if self.drawn <= ENTITIES {
+        if self.drawn.max(self.plan.segments.len()) <= ENTITIES {
             return Ok(());
         }
         Err(Damage::new(
             Place::Whole,
-            format!("more than {ENTITIES} entities and blocks are drawn"),
+            format!("more than {ENTITIES} entities, blocks or segments are drawn"),
             "split the drawing",
         ))
     }
 
     fn insert(
         &mut self,
-        insert: &'a Insert,
+        (insert, name): (&'a Insert, &str),
         layer: &'a str,
         context: &Context<'a>,
     ) -> Result<(), Damage> {
@@ -168,7 +172,7 @@ impl<'a> Reader<'a> {
             return Err(Damage::broken(
                 Place::Whole,
                 format!(
-                    "there is no block `{}` to insert",
+                    "there is no block `{}` for the insert {name}",
                     super::text::shortened(&insert.name)
                 ),
             ));

@@ -20,7 +20,7 @@ use crate::error::{Damage, Place, ReadError};
 use crate::read::gunzip;
 
 pub use geojson::{CellInput, parse_cells};
-pub use project::Crs;
+pub use project::{Crs, Projection};
 pub use write::{write_geojson, write_seg};
 
 /// What a plan file does not say by itself.

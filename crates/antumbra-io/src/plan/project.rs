@@ -19,7 +19,7 @@ pub enum Crs {
 
 /// The map from degrees to metres around a middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Projection {
+pub struct Projection {
     middle: [f64; 2],
     scale: [f64; 2],
 }
@@ -30,7 +30,8 @@ const ECCENTRICITY: f64 = 0.006_694_379_990_14;
 
 impl Projection {
     /// Around a middle in degrees.
-    pub(super) fn around(middle: [f64; 2]) -> Self {
+    #[must_use]
+    pub fn around(middle: [f64; 2]) -> Self {
         let (sin, cos) = middle[1].to_radians().sin_cos();
         let w = (1.0 - ECCENTRICITY * sin * sin).sqrt();
         let parallel = AXIS / w * cos;
@@ -45,8 +46,16 @@ impl Projection {
         self.middle
     }
 
-    pub(super) fn apply(&self, p: [f64; 2]) -> [f64; 2] {
+    /// From degrees to metres.
+    #[must_use]
+    pub fn apply(&self, p: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|k| (p[k] - self.middle[k]) * self.scale[k])
+    }
+
+    /// From metres to degrees.
+    #[must_use]
+    pub fn undo(&self, p: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|k| p[k] / self.scale[k] + self.middle[k])
     }
 }
 
@@ -61,5 +70,7 @@ mod tests {
         assert!((x - 74_330.0).abs() < 100.0, "{x}");
         assert!((y - 111_200.0).abs() < 30.0, "{y}");
         assert_eq!(p.apply([16.4, 48.2]), [0.0, 0.0]);
+        let [lon, lat] = p.undo([x, y]);
+        assert!((lon - 17.4).abs() < 1e-12 && (lat - 49.2).abs() < 1e-12);
     }
 }

@@ -18,8 +18,8 @@ use crate::error::{Damage, Place};
 const NESTED: u32 = 16;
 /// Elements within elements at most.
 const DEPTH: u32 = 256;
-/// Elements drawn at most: `use` elements may multiply a small file without end.
-const ELEMENTS: u32 = 4_000_000;
+/// Elements drawn, or segments of them, at most: `use` elements may multiply a small file without end.
+const ELEMENTS: usize = 4_000_000;
 
 pub(super) fn read(text: &str) -> Result<PlanInput, Damage> {
     let options = ParsingOptions {
@@ -104,7 +104,7 @@ struct Reader<'a, 'i> {
     plan: PlanInput,
     curves: u32,
     skipped: u32,
-    drawn: u32,
+    drawn: usize,
 }
 
 impl<'a, 'i> Reader<'a, 'i> {
@@ -119,10 +119,10 @@ impl<'a, 'i> Reader<'a, 'i> {
             return Ok(());
         }
         self.drawn += 1;
-        if self.drawn > ELEMENTS {
+        if self.drawn.max(self.plan.segments.len()) > ELEMENTS {
             return Err(Damage::new(
                 place(node),
-                format!("more than {ELEMENTS} elements are drawn"),
+                format!("more than {ELEMENTS} elements or segments are drawn"),
                 "split the drawing",
             ));
         }

@@ -477,7 +477,7 @@ impl Source for RegionLines {
 }
 
 /// The parts of the cell's edges along which no occluder lies.
-fn windows(plan: &Plan, cell: &CellShape) -> Vec<Window> {
+pub(super) fn windows(plan: &Plan, cell: &CellShape) -> Vec<Window> {
     let corners = cell.corners();
     let n = corners.len();
     let mut out = Vec::with_capacity(n);

@@ -3,14 +3,14 @@
 //! After [Bittner02, 6.5.3]: a target is a virtual segment, or the sides of a region through which lines enter
 //! it. It is not inserted, and what lies along it does not hide it.
 
-use antumbra_kernel::{Point2, Rect};
+use antumbra_kernel::{Point2, Rect, orient2d};
 use antumbra_lines::SegmentOccluder;
-use antumbra_scene::plan::{CellShape, Plan};
+use antumbra_scene::plan::{CellShape, PieceId, Plan};
 
 use super::answer::unblocked;
 use super::line::PlanLine;
 use super::point::PointLines;
-use super::region::RegionLines;
+use super::region::{RegionLines, windows};
 use super::sweep::{How, Source, Swept, sweep};
 use crate::occlusion::{BoxTest, SweepOrder};
 
@@ -25,7 +25,8 @@ pub enum Sight {
 
 /// For each target whether it is seen from a cell. Exact; one sweep.
 ///
-/// Two points see each other if no closed segment meets the segment between them.
+/// Two points see each other if no closed segment meets the segment between them, but for those that hold one of the
+/// points and those in line with both, which are seen edge-on.
 #[must_use]
 pub fn sights(plan: &Plan, from: &CellShape, targets: &[CellShape]) -> Vec<Option<Sight>> {
     let how = How {
@@ -40,7 +41,7 @@ pub fn sights(plan: &Plan, from: &CellShape, targets: &[CellShape]) -> Vec<Optio
             let grazing = vec![swept.source.grazing.clone()];
             let one = |to: &CellShape| match to {
                 CellShape::Point(p) => between_points(plan, *eye, *p),
-                _ => sight(&mut swept, &grazing, from, to),
+                _ => sight(plan, &mut swept, &grazing, from, to),
             };
             targets.iter().map(one).collect()
         }
@@ -51,7 +52,7 @@ pub fn sights(plan: &Plan, from: &CellShape, targets: &[CellShape]) -> Vec<Optio
             let one = |to: &CellShape| match to {
                 // Lines through a point are an open set only as seen from the point.
                 CellShape::Point(_) => sights(plan, to, std::slice::from_ref(from)).pop().flatten(),
-                _ => sight(&mut swept, &grazing, from, to),
+                _ => sight(plan, &mut swept, &grazing, from, to),
             };
             targets.iter().map(one).collect()
         }
@@ -59,6 +60,7 @@ pub fn sights(plan: &Plan, from: &CellShape, targets: &[CellShape]) -> Vec<Optio
 }
 
 fn sight<S: Source>(
+    plan: &Plan,
     swept: &mut Swept<S>,
     grazing: &[Vec<Point2>],
     from: &CellShape,
@@ -69,13 +71,12 @@ fn sight<S: Source>(
     }
     let corners = to.corners();
     let mut blockers = Vec::new();
-    let n = corners.len();
-    let sides = if n == 2 { 1 } else { n };
-    for i in 0..sides {
-        let ends = [corners[i], corners[(i + 1) % n]];
+    // Lines enter a region where they could leave it, too: not through walls along its sides.
+    let sides = windows(plan, to).into_iter().map(|w| [w.a, w.b]);
+    for side in sides.take(if corners.len() == 2 { 1 } else { usize::MAX }) {
         swept
             .source
-            .blockers(ends, SegmentOccluder::TARGET, &mut blockers);
+            .blockers(side, SegmentOccluder::TARGET, &mut blockers);
     }
     let mut found = None;
     for blocker in blockers {
@@ -103,9 +104,12 @@ fn between_points(plan: &Plan, p: Point2, q: Point2) -> Option<Sight> {
     }
     let around = Rect::around([p, q])?;
     let segment = CellShape::Segment([p, q]);
-    let blocked = plan
-        .pieces_in(&around)
-        .into_iter()
-        .any(|id| plan.occludes(id) && segment.meets_segment(plan.pieces()[id.0 as usize]));
+    let blocks = |id: PieceId| {
+        let piece = plan.pieces()[id.0 as usize];
+        let holds = |p: Point2| CellShape::Point(p).meets_segment(piece);
+        let in_line = piece.iter().all(|&e| orient2d(p, q, e) == 0);
+        plan.occludes(id) && segment.meets_segment(piece) && !in_line && !holds(p) && !holds(q)
+    };
+    let blocked = plan.pieces_in(&around).into_iter().any(blocks);
     (!blocked).then(|| Sight::Line(PlanLine::through(p, q)))
 }

@@ -5,7 +5,7 @@
 //! so do those right of them. The corners of the chains are points of the plan: the funnel's facets. Which they
 //! are, and in which order, is decided exactly; their coordinates and ends are rounded, for output.
 
-use antumbra_kernel::{LIMIT, Point2, Rect, orient2d};
+use antumbra_kernel::{LIMIT, Point2, Rect};
 use antumbra_lines::Half;
 use antumbra_scene::plan::{CellShape, Plan};
 
@@ -185,12 +185,9 @@ impl Tile {
             pivots.reverse();
         }
         let beyond = |p: [f64; 2]| -> f64 { -turn_of(self.window, p) };
-        let outer = self.window.map(|p| -f64_orient(self.target, p));
-        let sign = if outer[0].abs() > outer[1].abs() {
-            outer[0]
-        } else {
-            outer[1]
-        };
+        // The line of the target may cross the window: what counts is where a line inside the funnel starts.
+        let start = meet(&PlanLine::sum(&self.lines), self.window);
+        let sign = -turn_of(self.target, start);
         let behind = |p: [f64; 2]| turn_of(self.target, p) * sign;
         let skip = pivots.iter().take_while(|&&p| beyond(p) <= 0.0).count();
         let keep = pivots
@@ -218,10 +215,6 @@ impl Tile {
         }
         meet(line, segment)
     }
-}
-
-fn f64_orient([a, b]: [Point2; 2], p: Point2) -> f64 {
-    orient2d(a, b, p) as f64
 }
 
 /// Twice the signed area of the triangle of a segment and a point.

@@ -1,6 +1,7 @@
 //! Plans against an oracle that shares no code with the engine, on tiny lattices and on measured plans.
 
 mod ladder;
+mod mutual;
 mod rays;
 mod real;
 mod small;

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use antumbra::plan::{CellShape, Plan, PlanView};
+use antumbra::plan::{CellShape, Plan, PlanView, Ratio};
 use antumbra_kernel::Point2;
 use antumbra_testkit::flat::{FlatScene, GridPoint, first_on_line, orient2d};
 use antumbra_testkit::random::Random;
@@ -24,23 +24,20 @@ pub(crate) fn seen(view: &PlanView) -> Seen {
     for id in &view.touching {
         out.entry(id.0 as usize).or_default().0 = true;
     }
+    // Maximal intervals: in order, with gaps between them.
+    for pair in view.fragments.windows(2) {
+        assert!(pair[0].piece < pair[1].piece || pair[0].at[1] < pair[1].at[0]);
+    }
     for f in &view.fragments {
+        assert!(f.at[0] < f.at[1] && f.at[0] >= Ratio::ZERO && f.at[1] <= Ratio::ONE);
         let interval = [f.at[0].value(), f.at[1].value()];
-        let intervals = &mut out.entry(f.piece.0 as usize).or_default().1;
-        // Maximal intervals: in order, with gaps between them.
-        assert!(
-            intervals
-                .last()
-                .is_none_or(|last: &[f64; 2]| last[1] < interval[0])
-        );
-        assert!(interval[0] < interval[1] && interval[0] >= 0.0 && interval[1] <= 1.0);
-        intervals.push(interval);
+        out.entry(f.piece.0 as usize).or_default().1.push(interval);
     }
     out
 }
 
 /// A random grid point of the closed cell, and how often the draw failed.
-fn inside(cell: &CellShape, random: &mut Random) -> Option<GridPoint> {
+pub(crate) fn inside(cell: &CellShape, random: &mut Random) -> Option<GridPoint> {
     let corners = cell.corners();
     let bounds = cell.bounds();
     match cell {
@@ -161,6 +158,9 @@ pub(crate) fn first(
     cell: &CellShape,
 ) -> Result<Option<(usize, [IBig; 2])>, String> {
     let corners: Vec<GridPoint> = cell.corners().iter().map(|&c| grid(c)).collect();
+    if let CellShape::Region(_) = cell {
+        return first_on_line(scene.segments(), line, &corners);
+    }
     let apart = |[p, q]: [GridPoint; 2]| match cell {
         CellShape::Region(_) => true,
         CellShape::Segment(_) => [p, q]

@@ -12,6 +12,11 @@ use dashu_int::IBig;
 use crate::rays::{confirm, first, grid, oracle, seen, shoot};
 
 pub(crate) fn build(segments: &[[GridPoint; 2]], leaf: usize) -> Plan {
+    build_within(40.0, segments, leaf)
+}
+
+/// A plan on whole numbers below a size.
+pub(crate) fn build_within(size: f64, segments: &[[GridPoint; 2]], leaf: usize) -> Plan {
     let segments = segments.iter().enumerate().map(|(i, s)| PlanSegment {
         ends: s.map(|p| p.map(|v| v as f64)),
         class: 0,
@@ -24,14 +29,14 @@ pub(crate) fn build(segments: &[[GridPoint; 2]], leaf: usize) -> Plan {
     };
     let options = PlanOptions {
         grid: Some(1.0),
-        around: Some(([-40.0, -40.0], [40.0, 40.0])),
+        around: Some(([-size; 2], [size; 2])),
         leaf,
         ..PlanOptions::default()
     };
     Plan::build(&input, &options).expect("good input")
 }
 
-fn random_cell(random: &mut Random, size: i64, kind: usize) -> Vec<[f64; 2]> {
+pub(crate) fn random_cell(random: &mut Random, size: i64, kind: usize) -> Vec<[f64; 2]> {
     let mut p = || {
         [
             random.integer(-size, size) as f64,
@@ -206,20 +211,44 @@ fn certificate(plan: &Plan, shape: &CellShape, random: &mut Random) {
 
 #[test]
 fn tiny_scenes_agree_with_the_oracle_and_with_themselves() {
-    let mut random = Random::new(11);
+    small_scenes(11, if long() { 6000 } else { 400 }, 1);
+}
+
+/// The same shapes over the whole grid, a step or none away from touching, crossing and lining up.
+#[test]
+fn scenes_as_large_as_the_grid_agree_with_the_oracle() {
+    small_scenes(12, if long() { 6000 } else { 400 }, 900_000);
+}
+
+/// Lattices of a few points, `scale` steps from one to the next, give or take a step if that is more than one.
+fn small_scenes(seed: u64, scenes: usize, scale: i64) {
+    let mut random = Random::new(seed);
     let mut hits = 0;
-    let scenes = if long() { 6000 } else { 400 };
     for scene in 0..scenes {
         let size = [2, 3, 5, 9][random.index(4)];
         let count = 1 + random.index(9);
-        let mut p = || [random.integer(-size, size), random.integer(-size, size)];
-        let segments: Vec<[GridPoint; 2]> = (0..count).map(|_| [p(), p()]).collect();
+        let stray = i64::from(scale > 1);
+        let place = |random: &mut Random, v: i64| v * scale + random.integer(-stray, stray);
+        let p = |random: &mut Random| {
+            let p = [random.integer(-size, size), random.integer(-size, size)];
+            p.map(|v| place(random, v))
+        };
+        let segments: Vec<[GridPoint; 2]> = (0..count)
+            .map(|_| [p(&mut random), p(&mut random)])
+            .collect();
         if segments.iter().all(|s| s[0] == s[1]) {
             continue;
         }
-        let plan = build(&segments, 1);
-        let outline = random_cell(&mut random, size, scene % 4);
-        let cell = PlanCell::new(&plan, &outline).expect("a cell");
+        let within = (40 * scale).min(8_300_000) as f64;
+        let plan = build_within(within, &segments, 1);
+        let outline: Vec<[f64; 2]> = random_cell(&mut random, size, scene % 4)
+            .iter()
+            .map(|p| p.map(|v| place(&mut random, v as i64).min(8_300_000) as f64))
+            .collect();
+        // A box whose corners strayed may meet itself.
+        let Ok(cell) = PlanCell::new(&plan, &outline) else {
+            continue;
+        };
         let oracle = oracle(&plan);
         for shape in &cell.parts {
             let view = look(&plan, shape, &SeeOptions::default());
@@ -235,7 +264,7 @@ fn tiny_scenes_agree_with_the_oracle_and_with_themselves() {
             }
             let mut shuffled = segments.clone();
             random.shuffle(&mut shuffled);
-            let again = build(&shuffled, 3);
+            let again = build_within(within, &shuffled, 3);
             assert_eq!(again.pieces(), plan.pieces());
             same(&view, &look(&again, shape, &SeeOptions::default()));
         }

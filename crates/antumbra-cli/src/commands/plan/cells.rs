@@ -4,7 +4,7 @@ use std::path::Path;
 use std::str::FromStr;
 
 use antumbra::plan::{Plan, PlanCell};
-use antumbra_io::plan::parse_cells;
+use antumbra_io::plan::{Projection, parse_cells};
 
 use crate::failure::Failure;
 
@@ -37,11 +37,15 @@ pub(super) struct NamedCell {
 }
 
 impl NamedCell {
-    /// The cell of the command line.
-    pub(super) fn given(outline: &OutlineArg) -> Self {
+    /// The cell of the command line, in the coordinates of the plan's file: degrees if that was projected.
+    pub(super) fn given(outline: &OutlineArg, around: Option<[f64; 2]>) -> Self {
+        let mut outline = outline.0.clone();
+        if let Some(projection) = around.map(Projection::around) {
+            outline.iter_mut().for_each(|p| *p = projection.apply(*p));
+        }
         Self {
             id: "0".to_owned(),
-            outline: outline.0.clone(),
+            outline,
         }
     }
 

@@ -30,7 +30,7 @@ use cells::{NamedCell, OutlineArg};
 pub(crate) struct PlanArgs {
     /// The plan: GeoJSON, SVG, DXF or lines of `x1 y1 x2 y2`, also gzip'd
     plan: PathBuf,
-    /// The view cell: corners of a polygon, two ends of a segment, or one point
+    /// The view cell: corners of a polygon, two ends of a segment, or one point, in the coordinates of the plan
     #[arg(long, value_name = "\"X,Y X,Y ...\"", allow_hyphen_values = true)]
     #[arg(required_unless_present = "cells", conflicts_with = "cells")]
     cell: Option<OutlineArg>,
@@ -209,17 +209,15 @@ pub(crate) fn run(args: &PlanArgs, global: &Global) -> Result<(), Failure> {
     let start = Instant::now();
     let input = read_plan(&args.plan, &args.reading()).map_err(|e| read_failure(&e))?;
     let outlines = match (&args.cell, &args.cells) {
-        (Some(outline), _) => vec![NamedCell::given(outline)],
+        (Some(outline), _) => vec![NamedCell::given(outline, input.projected_around)],
         (None, Some(path)) => cells::read(path, input.projected_around)?,
         (None, None) => Vec::new(),
     };
+    let to = args.to.as_ref();
+    let to = to.map(|outline| NamedCell::given(outline, input.projected_around));
     let load_time = start.elapsed();
     let start = Instant::now();
-    let around = cells::around(
-        outlines
-            .iter()
-            .chain(args.to.as_ref().map(NamedCell::given).iter()),
-    );
+    let around = cells::around(outlines.iter().chain(&to));
     let options = PlanOptions {
         grid: global.grid,
         around,
@@ -241,8 +239,8 @@ pub(crate) fn run(args: &PlanArgs, global: &Global) -> Result<(), Failure> {
     let mut result = Map::new();
     let text = if args.matrix {
         matrix(&plan, &outlines, &made, &mut result)
-    } else if let Some(to) = &args.to {
-        let to = NamedCell::given(to).make(&plan, None)?;
+    } else if let Some(to) = &to {
+        let to = to.make(&plan, None)?;
         report::sight(mutual(&plan, &made[0], &to), &mut result)
     } else {
         let seen = see_all(&plan, &made, &args.options(plan.grid().step()));
@@ -266,6 +264,9 @@ pub(crate) fn run(args: &PlanArgs, global: &Global) -> Result<(), Failure> {
     add("seconds", json!(seconds(start.elapsed())));
     add("segments", json!(plan.segment_count()));
     add("grid", json!(plan.grid().step()));
+    if let Some(middle) = input.projected_around {
+        add("projected_around", json!(middle));
+    }
     add("load_seconds", json!(seconds(load_time)));
     add("build_seconds", json!(seconds(build_time)));
     let took = result["seconds"].as_f64().unwrap_or_default() * 1e3;

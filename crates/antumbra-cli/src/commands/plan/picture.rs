@@ -108,7 +108,12 @@ pub(super) fn plan(plan: &Plan, seen: &[Seen], areas: &[Isovist], y_down: bool) 
                 paper.at(point(piece, to))
             );
         }
-        let corners: Vec<[f64; 2]> = view.cell.corners().iter().map(|c| c.to_f64()).collect();
+        let mut corners: Vec<[f64; 2]> = view.cell.corners().iter().map(|c| c.to_f64()).collect();
+        if let [[x, y]] = corners[..] {
+            // A point is drawn as a diamond of a few pixels.
+            let r = 4.0 / paper.scale;
+            corners = vec![[x - r, y], [x, y - r], [x + r, y], [x, y + r]];
+        }
         blue += &outline(&paper, &corners);
     }
     let mut walls = String::new();
@@ -145,7 +150,7 @@ pub(super) fn plan(plan: &Plan, seen: &[Seen], areas: &[Isovist], y_down: bool) 
     );
     let style = "fill=\"none\" stroke=\"#d00000\" stroke-width=\"1.6\" stroke-linecap=\"round\"";
     layer(&mut svg, "visible", style, &red);
-    let style = "fill=\"#3060d0\" fill-opacity=\"0.45\" stroke=\"#2040a0\" stroke-width=\"1\" stroke-linejoin=\"round\"";
+    let style = "fill=\"#3060d0\" fill-opacity=\"0.45\" stroke=\"#2040a0\" stroke-width=\"1.6\" stroke-linejoin=\"round\"";
     layer(&mut svg, "cell", style, &blue);
     svg += "</svg>\n";
     svg

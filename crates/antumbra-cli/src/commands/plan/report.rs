@@ -5,6 +5,7 @@ use std::time::Instant;
 use antumbra::plan::{
     Accuracy, Fragment, Funnel, Isovist, Plan, PlanInput, PlanLine, PlanView, Seen, Sight,
 };
+use antumbra_io::plan::Projection;
 use serde_json::{Map, Value, json};
 
 use super::PlanArgs;
@@ -194,12 +195,15 @@ pub(super) fn geojson(
     seen: &[Seen],
     areas: &[Isovist],
 ) -> Value {
+    // Degrees again, if degrees were projected.
+    let projection = input.projected_around.map(Projection::around);
+    let place = |p: [f64; 2]| projection.map_or(p, |projection| projection.undo(p));
     let mut features = Vec::new();
     for (named, one) in outlines.iter().zip(seen) {
         for s in &one.segments {
             let segment = &input.segments[s.segment.0 as usize];
             let [p, q] = segment.ends;
-            let at = |t: f64| [0, 1].map(|k| p[k] + t * (q[k] - p[k]));
+            let at = |t: f64| place([0, 1].map(|k| p[k] + t * (q[k] - p[k])));
             let lines: Vec<[[f64; 2]; 2]> =
                 s.fragments.iter().map(|f| [at(f[0]), at(f[1])]).collect();
             features.push(json!({
@@ -219,6 +223,7 @@ pub(super) fn geojson(
         // Rings of GeoJSON repeat their first point.
         let mut polygons = area.polygons.clone();
         for ring in polygons.iter_mut().flatten() {
+            ring.iter_mut().for_each(|p| *p = place(*p));
             ring.extend(ring.first().copied());
         }
         features.push(json!({
@@ -228,11 +233,7 @@ pub(super) fn geojson(
             "geometry": {"type": "MultiPolygon", "coordinates": polygons},
         }));
     }
-    let mut out = json!({"type": "FeatureCollection", "features": features});
-    if let Some(middle) = input.projected_around {
-        out["projected_around"] = json!(middle);
-    }
-    out
+    json!({"type": "FeatureCollection", "features": features})
 }
 
 /// The funnels: which part of a segment is seen through which part of a cell's edge, and their extremal lines.
