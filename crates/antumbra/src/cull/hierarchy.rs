@@ -61,6 +61,11 @@ impl Bounds {
         dot(d, d)
     }
 
+    fn holds(&self, points: &[[f64; 3]]) -> bool {
+        let inside = |p: &[f64; 3]| (0..3).all(|k| self.low[k] <= p[k] && p[k] <= self.high[k]);
+        points.iter().all(inside)
+    }
+
     fn meet(&self, other: &Self) -> Self {
         Self {
             low: std::array::from_fn(|k| self.low[k].max(other.low[k])),
@@ -137,6 +142,14 @@ pub(super) struct Item {
     pub count: u32,
 }
 
+/// A face that an item has in a leaf.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LeafFace {
+    pub face: u32,
+    /// Whether all of it is in the leaf.
+    pub whole: bool,
+}
+
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HierarchyNode {
     /// Around all that is in the node.
@@ -166,7 +179,7 @@ pub(super) struct Hierarchy {
     /// The node of the kD-tree that each was made of.
     pub cells: Vec<KdBox>,
     pub items: Vec<Item>,
-    pub polygons: Vec<u32>,
+    pub polygons: Vec<LeafFace>,
     pub occluders: Vec<LeafOccluder>,
     pub objects: Vec<u32>,
     /// The node made of a kD node; for one that was pruned, the leaf above it.
@@ -358,7 +371,13 @@ impl Builder<'_> {
                     .then(a.cmp(&b))
             });
             let count = faces.len() as u32;
-            self.out.polygons.extend(faces);
+            let all = Bounds::of(&here.bounds);
+            self.out
+                .polygons
+                .extend(faces.into_iter().map(|face| LeafFace {
+                    face,
+                    whole: all.holds(self.polygons.get(face).corners),
+                }));
             self.out.items.push(Item {
                 object: group[0].0,
                 bounds,

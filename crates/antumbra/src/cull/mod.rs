@@ -124,6 +124,8 @@ pub struct Culler {
     occluders: Occluders,
     tree: Tree,
     visible: Visible,
+    /// The look in which each face was last found hidden. Then it is, whatever is inserted after.
+    hidden: Vec<u32>,
     /// The frame in which each occluder was last tried.
     tried: Vec<u32>,
     /// The occluders in the tree, by their number there.
@@ -210,6 +212,7 @@ impl Culler {
         let mut culler = Self {
             grid: *scene.grid(),
             kd: scene.kd().clone(),
+            hidden: vec![0; polygons.len()],
             polygons,
             // A fragment of an occluder brings few nodes.
             tree: Tree::new((32 * most).clamp(1024, 1 << 18), most),

@@ -5,7 +5,7 @@ use antumbra_scene::ObjectId;
 use super::bound::snap_eye;
 use super::coherence::{Memory, State};
 use super::fragment::Block;
-use super::hierarchy::Bounds;
+use super::hierarchy::{Bounds, LeafFace};
 use super::options::{LeafTest, Method, Order, Selection};
 use super::select::keep_largest;
 use super::tree::ROOT;
@@ -91,6 +91,7 @@ impl Culler {
     pub(super) fn start_anew(&mut self) {
         self.visible.frames.fill(0);
         self.tried.fill(0);
+        self.hidden.fill(0);
         self.memory.fill(Memory::NEW);
         self.visible.frame = 0;
         self.visible.objects.clear();
@@ -438,11 +439,16 @@ impl Culler {
             return true;
         }
         for i in item.first..item.first + item.count {
+            let LeafFace { face, whole } = self.hierarchy.polygons[i as usize];
+            if self.hidden[face as usize] == self.visible.frame {
+                continue;
+            }
             self.visible.work.polygon_tests += 1;
-            let face = self.hierarchy.polygons[i as usize];
-            if !self.tree.hides_polygon(&self.polygons.get(face)) {
+            let entry = if whole { entry } else { ROOT };
+            if !self.tree.hides_polygon(&self.polygons.get(face), entry) {
                 return true;
             }
+            self.hidden[face as usize] = self.visible.frame;
         }
         false
     }

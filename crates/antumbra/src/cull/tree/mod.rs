@@ -75,6 +75,12 @@ impl Shell {
                 || block.center[k] + block.half[k] < f64::from(self.low[k])
         })
     }
+
+    /// Whether all between two corners is beyond, exactly.
+    #[inline]
+    fn hides_between(&self, [low, high]: [[f64; 3]; 2]) -> bool {
+        (0..3).any(|k| low[k] > f64::from(self.high[k]) || high[k] < f64::from(self.low[k]))
+    }
 }
 
 /// What only insertion needs to know of a node.
@@ -140,6 +146,8 @@ pub(super) struct Tree {
     /// A stack of fragments.
     fragments: Vec<Vertex>,
     top: usize,
+    /// The lower and the upper corner of what is tested in fragments.
+    extent: [[f64; 3]; 2],
     /// The widest doubtful zone of what was loaded, and so of all its parts.
     zone: f64,
     /// Whether the fragment that was classified last is far from the plane: twice the zone, so that all
@@ -179,6 +187,7 @@ impl Tree {
             top: 0,
             clear: false,
             zone: 0.0,
+            extent: [[0.0; 3]; 2],
             signs: [0; MAX_CORNERS],
             sides: [0.0; MAX_CORNERS],
             hits: Vec::with_capacity(max_blockers),

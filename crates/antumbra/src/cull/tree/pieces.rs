@@ -1,15 +1,17 @@
 //! Tests of polygons, and of boxes whose faces or outline are split.
 
 use super::super::bound::{TAU, dot, on_plane, size, sub};
-use super::super::fragment::{Block, DOUBTFUL, outline};
+use super::super::fragment::{Block, DOUBTFUL, Vertex, outline};
 use super::super::options::LeafTest;
-use super::{Blocker, Face, LEAF, NO_LINE, OPEN, OUTSIDE, Tree};
+use super::{Blocker, Face, LEAF, NO_LINE, OPEN, OUTSIDE, ROOT, Tree};
 
 impl Tree {
-    /// Whether nothing of a polygon can be seen: [Bittner02, 4.8]. The polygon is split.
-    pub(in crate::cull) fn hides_polygon(&mut self, face: &Face<'_>) -> bool {
+    /// Whether nothing of a polygon can be seen: [Bittner02, 4.8]. The polygon is split. It starts at the
+    /// slot that the test of a box around it came to.
+    pub(in crate::cull) fn hides_polygon(&mut self, face: &Face<'_>, entry: u32) -> bool {
         self.load(face);
-        self.filter(face, self.root, 0, None)
+        self.extent = extent(&self.fragments[..self.top]);
+        self.filter(face, self.child(entry), 0, None)
     }
 
     /// Whether nothing of a box can be seen: its faces that look at the eye are split
@@ -45,7 +47,7 @@ impl Tree {
                 normal: unit,
                 parts: [[0.0; 3], unit],
             };
-            if !self.hides_polygon(&face) {
+            if !self.hides_polygon(&face, ROOT) {
                 return false;
             }
         }
@@ -57,6 +59,8 @@ impl Tree {
     pub(in crate::cull) fn hides_outline(&mut self, block: &Block, test: LeafTest) -> bool {
         self.top = outline(block, &mut self.fragments);
         self.zone = block.zone();
+        self.extent =
+            [-1.0, 1.0].map(|s| std::array::from_fn(|k| block.center[k] + s * block.half[k]));
         if self.top == 0 {
             return false;
         }
@@ -93,6 +97,10 @@ impl Tree {
             let unsure = doubtful && self.signs[..end - start].contains(&DOUBTFUL);
             match (positive || unsure, negative || unsure) {
                 (true, true) => {
+                    if self.shells[child as usize].hides_between(self.extent) {
+                        self.used[child as usize] = true;
+                        return true;
+                    }
                     if children.contains(&OPEN) || !self.room(end - start) {
                         return false;
                     }
@@ -161,4 +169,15 @@ impl Tree {
         }
         behind
     }
+}
+
+/// The lower and the upper corner of the box around vertices.
+fn extent(vertices: &[Vertex]) -> [[f64; 3]; 2] {
+    let start = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    vertices.iter().fold(start, |[low, high], v| {
+        [
+            std::array::from_fn(|k| low[k].min(v.p[k])),
+            std::array::from_fn(|k| high[k].max(v.p[k])),
+        ]
+    })
 }
