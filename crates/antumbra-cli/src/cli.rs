@@ -1,6 +1,8 @@
 //! The options that all commands share, and the list of commands.
 
-use clap::{Args, Parser, Subcommand};
+use std::ffi::OsString;
+
+use clap::{Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
 use crate::commands::{
     bake, completions, cull, demo, r#gen, man, map, pair, plan, pvs, ray, shadow,
@@ -31,6 +33,25 @@ Examples:
 
 Exit codes: 0 done; 2 wrong usage; 3 damaged or impossible content; 4 a path that cannot be
 read or written; 5 stopped, with what was finished saved.";
+
+impl Cli {
+    /// Parses a command line. Values may be negative numbers: what is wrong with one is then said of
+    /// the value, and it is not taken for an option.
+    pub(crate) fn read(args: &[OsString]) -> Result<Self, clap::Error> {
+        let matches = with_negative_numbers(Self::command()).try_get_matches_from(args)?;
+        Self::from_arg_matches(&matches)
+    }
+}
+
+fn with_negative_numbers(command: clap::Command) -> clap::Command {
+    let of_arg = |arg: clap::Arg| {
+        let takes = arg.get_action().takes_values();
+        arg.allow_negative_numbers(takes)
+    };
+    command
+        .mut_args(of_arg)
+        .mut_subcommands(with_negative_numbers)
+}
 
 /// Options of every command.
 #[derive(Args, Clone, Copy, Debug)]

@@ -7,6 +7,7 @@ use antumbra_io::{ReadError, ReadOptions, Up, read_scene_with};
 use antumbra_scene::{BuildReport, OccluderPolicy, Scene, SceneBuilder, SceneInput};
 use clap::{Args, ValueEnum};
 
+use crate::classes::check_classes;
 use crate::cli::Global;
 use crate::failure::Failure;
 
@@ -105,6 +106,14 @@ pub(crate) fn load(
 ) -> Result<Loaded, Failure> {
     let start = Instant::now();
     let input = read(&args.scene, &args.reading)?;
+    let reading = &args.reading;
+    let known = input.classes();
+    check_classes(
+        &reading.occluders,
+        &reading.transparent,
+        &known,
+        global.output(),
+    )?;
     let load_time = start.elapsed();
     let start = Instant::now();
     let (scene, report) = build(input, &args.reading, global.grid, cells)?;

@@ -1,7 +1,7 @@
 //! Where results, notes and progress go: results to stdout, everything else to stderr.
 
 use std::io::{IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::Value;
@@ -78,6 +78,34 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     })
 }
 
+/// Refuses results that cannot be written as asked, before any work is done: each has a path, if it
+/// is wanted, and the extension of its format.
+pub(crate) fn check_outputs(
+    outputs: &[(Option<&PathBuf>, &str)],
+    inputs: &[&Path],
+) -> Result<(), Failure> {
+    let mut known: Vec<&PathBuf> = Vec::new();
+    for (path, extension) in outputs {
+        let Some(path) = *path else { continue };
+        check_writable(path, inputs)?;
+        if known.contains(&path) {
+            return Err(Failure::Usage(format!(
+                "{}: two results would be written to this file; give each its own name",
+                path.display()
+            )));
+        }
+        known.push(path);
+        let given = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        if given.is_some_and(|given| given != *extension) {
+            return Err(Failure::Usage(format!(
+                "{}: what is written there is .{extension}; change the file's extension",
+                path.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
 /// Refuses a path that will not be writable or is one of the inputs, before any work is done.
 pub(crate) fn check_writable(path: &Path, inputs: &[&Path]) -> Result<(), Failure> {
     if path.is_dir() {
@@ -95,7 +123,7 @@ pub(crate) fn check_writable(path: &Path, inputs: &[&Path]) -> Result<(), Failur
         .any(|input| place(path).is_some() && place(input) == place(path))
     {
         return Err(Failure::Usage(format!(
-            "{}: the result would replace its own input; give another name with -o",
+            "{}: the result would replace its own input; give it another name",
             path.display()
         )));
     }

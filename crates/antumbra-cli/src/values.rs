@@ -55,6 +55,22 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// The full angle of a view, in degrees.
+pub(crate) fn view_angle(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if (0.01..=179.0).contains(&value) => Ok(value),
+        _ => Err("expected an angle from 0.01 to 179 degrees".to_owned()),
+    }
+}
+
+/// A crease angle, in degrees.
+pub(crate) fn crease_angle(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if (0.0..=180.0).contains(&value) => Ok(value),
+        _ => Err("expected an angle from 0 to 180 degrees".to_owned()),
+    }
+}
+
 /// A size in pixels, written `WxH`.
 pub(crate) fn pixels(text: &str) -> Result<[usize; 2], String> {
     let wrong = || "expected width and height like 1600x1000, each from 16 to 8192".to_owned();
@@ -71,7 +87,7 @@ pub(crate) fn pixels(text: &str) -> Result<[usize; 2], String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{AngleArg, PointArg, pixels, positive};
+    use super::{AngleArg, PointArg, crease_angle, pixels, positive, view_angle};
 
     #[test]
     fn points() {
@@ -95,6 +111,9 @@ mod tests {
     fn numbers_and_sizes() {
         assert_eq!(positive("2e-3"), Ok(0.002));
         assert!(positive("0").is_err() && positive("nan").is_err() && positive("x").is_err());
+        assert_eq!((view_angle("60"), crease_angle("0")), (Ok(60.0), Ok(0.0)));
+        assert!(view_angle("0").is_err() && view_angle("180").is_err());
+        assert!(view_angle("nan").is_err() && crease_angle("-1").is_err());
         assert_eq!(pixels("640x480"), Ok([640, 480]));
         assert!(pixels("640").is_err() && pixels("0x3").is_err() && pixels("99999x9").is_err());
     }

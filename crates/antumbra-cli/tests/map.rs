@@ -92,6 +92,54 @@ fn a_parallel_view_has_areas() {
     assert!(!folder.bytes("top.svg").is_empty());
 }
 
+/// The largest and smallest of the numbers with a code in a DXF text.
+fn extent(dxf: &str, code: &str) -> [f64; 2] {
+    let lines: Vec<&str> = dxf.lines().collect();
+    let pairs = lines.chunks_exact(2).filter(|pair| pair[0].trim() == code);
+    let numbers = pairs.map(|pair| pair[1].parse::<f64>().expect("a number"));
+    numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], n| {
+        [low.min(n), high.max(n)]
+    })
+}
+
+#[test]
+fn a_parallel_drawing_is_true_to_scale() {
+    let folder = Folder::new();
+    folder.write(
+        "plate.obj",
+        "o Türblatt\nv 2 3 0\nv 7 3 0\nv 7 4 0\nv 2 4 0\nf 1 2 3 4\n",
+    );
+    let run = "map plate.obj --eye 0,0,9 --to 0,0,0 --up-is 0,1,0 --ortho --svg a.svg --dxf a.dxf";
+    folder.run(run).done();
+    let dxf = String::from_utf8(folder.bytes("a.dxf")).expect("text");
+    assert_eq!(extent(&dxf, "10"), [2.0, 7.0]);
+    assert_eq!(extent(&dxf, "20"), [3.0, 4.0]);
+    assert!(dxf.contains("1071\n0\n1000\nT\\U+00FCrblatt\n"), "{dxf}");
+    let svg = String::from_utf8(folder.bytes("a.svg")).expect("text");
+    let scale = svg.split("data-scale=\"").nth(1).expect("a scale");
+    let scale: f64 = scale
+        .split('"')
+        .next()
+        .and_then(|s| s.parse().ok())
+        .expect("a number");
+    assert!((scale - 0.96 * 1200.0 / 5.0).abs() < 1e-9, "{scale}");
+}
+
+#[test]
+fn unknown_classes_do_not_pass_in_silence() {
+    let folder = folder();
+    let run = folder.run("map office.glb --eye 2,2,1.5 --occluders wal --json");
+    let text = run.failure(2);
+    assert!(
+        text.contains("the classes are") && text.contains("wall"),
+        "{text}"
+    );
+    let run = folder.run("map office.glb --eye 2,2,1.5 --transparent glas --json");
+    assert!(run.stderr.contains("nothing has the class glas"), "{run:?}");
+    let all = folder.run("map office.glb --eye 2,2,1.5 --json").json();
+    assert_eq!(run.json()["faces"], all["faces"]);
+}
+
 #[test]
 fn odd_viewpoints_are_answered() {
     let folder = Folder::new();
@@ -99,10 +147,11 @@ fn odd_viewpoints_are_answered() {
     folder.write("square.obj", square);
     // Behind everything.
     let map = folder
-        .run("map square.obj --eye 3,3,3 --to 9,9,9 --json")
+        .run("map square.obj --eye 3,3,3 --to 9,9,9 --json --svg away.svg")
         .json();
     assert_eq!(map["visible_polygons"], 0);
     assert_eq!(map["faces"], 2);
+    assert!(!folder.bytes("away.svg").is_empty());
     // On the polygon.
     let run = folder.run("map square.obj --eye 0.5,0.5,0 --json");
     assert!(run.stderr.contains("seen edge-on"), "{run:?}");
@@ -111,6 +160,10 @@ fn odd_viewpoints_are_answered() {
         (&map["edges"], &map["faces"]),
         (&Value::from(0), &Value::from(1))
     );
+    // Between the points of a coarse grid.
+    let run = folder.run("map square.obj --eye 0.5,0.5,2.6 --grid 1 --json");
+    assert!(run.stderr.contains("viewpoint was moved to"), "{run:?}");
+    assert_eq!(run.json()["eye"][2], 3.0);
     // Off the grid.
     let far = folder.run("map square.obj --eye 1e9,0,3 --grid 0.01");
     assert!(far.failure(3).contains("grid"), "{far:?}");

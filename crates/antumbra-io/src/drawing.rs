@@ -12,8 +12,19 @@ pub struct Drawing {
     pub title: String,
     /// Width and height in paper units.
     pub size: [f64; 2],
+    /// The scale, if it is the same everywhere; DXF is in scene units then.
+    pub scale: Option<Scale>,
     /// The layers, lowest first.
     pub layers: Vec<Layer>,
+}
+
+/// How a drawing lies in the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// How many paper units a scene unit is.
+    pub units: f64,
+    /// Where the origin of the scene is on paper.
+    pub origin: [f64; 2],
 }
 
 /// Lines of one kind.
@@ -43,14 +54,19 @@ pub struct Line {
 }
 
 /// Writes a drawing as SVG: a group a layer with the layer's name as id and class, a path a line with
-/// the classes of its layer and its element and the attributes `data-object` and `data-name`.
+/// the classes of its layer and its element and the attributes `data-object` and `data-name`; the
+/// scale, if there is one, as `data-scale` of the root.
 #[must_use]
 pub fn write_svg(drawing: &Drawing) -> String {
     let [width, height] = drawing.size;
+    let scale = drawing
+        .scale
+        .map(|s| format!(" data-scale=\"{}\"", s.units));
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-         viewBox=\"0 0 {width} {height}\">\n<title>{}</title>\n<style>\n\
+         viewBox=\"0 0 {width} {height}\"{}>\n<title>{}</title>\n<style>\n\
          path {{ fill: none; stroke: #1c1c1c; stroke-linecap: round; stroke-linejoin: round }}\n",
+        scale.unwrap_or_default(),
         escape(&drawing.title)
     );
     for layer in &drawing.layers {
@@ -109,9 +125,14 @@ fn path(points: &[[f64; 2]]) -> String {
     d
 }
 
-/// Four decimals at most, no trailing zeros.
+/// Four decimals at most.
 fn short(v: f64) -> String {
-    let text = format!("{v:.4}");
+    decimal(v, 4)
+}
+
+/// So many decimals at most, no trailing zeros.
+fn decimal(v: f64, decimals: usize) -> String {
+    let text = format!("{v:.decimals$}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" {
         "0".to_owned()
@@ -142,10 +163,20 @@ fn escape(text: &str) -> String {
     out
 }
 
-/// Writes a drawing as DXF (R12, text): a layer a layer, a polyline a line, y up. The object's name
-/// stands before each polyline as a comment (group 999), since R12 has no place for it.
+/// Who has written the extended data of a polyline.
+const APPLICATION: &str = "ANTUMBRA";
+/// The longest string of extended data, in bytes.
+const LONGEST: usize = 255;
+
+/// Writes a drawing as DXF (R12, text): a layer a layer, a polyline a line, y up; in scene units if the
+/// drawing has a scale, and where they are in the scene. Each polyline has the object's number and name as extended data of the
+/// application `ANTUMBRA`.
 #[must_use]
 pub fn write_dxf(drawing: &Drawing) -> String {
+    let Scale { units, origin } = drawing.scale.unwrap_or(Scale {
+        units: 1.0,
+        origin: [0.0, drawing.size[1]],
+    });
     let mut dxf = String::new();
     let mut pair = |code: u32, value: &str| {
         let _ = write!(dxf, "{code:>3}\n{value}\n");
@@ -190,6 +221,13 @@ pub fn write_dxf(drawing: &Drawing) -> String {
     }
     for (code, value) in [
         (0, "ENDTAB"),
+        (0, "TABLE"),
+        (2, "APPID"),
+        (70, "1"),
+        (0, "APPID"),
+        (2, APPLICATION),
+        (70, "0"),
+        (0, "ENDTAB"),
         (0, "ENDSEC"),
         (0, "SECTION"),
         (2, "ENTITIES"),
@@ -200,17 +238,18 @@ pub fn write_dxf(drawing: &Drawing) -> String {
         for line in &layer.lines {
             let closed = line.points.len() > 3 && line.points.first() == line.points.last();
             let points = &line.points[..line.points.len() - usize::from(closed)];
-            let name: String = line.name.chars().filter(|c| !c.is_control()).collect();
-            pair(999, &format!("object {} {name}", line.object));
             pair(0, "POLYLINE");
             pair(8, &layer.name);
             pair(66, "1");
             pair(70, if closed { "1" } else { "0" });
+            pair(1001, APPLICATION);
+            pair(1071, &line.object.to_string());
+            pair(1000, &extended(&line.name));
             for [x, y] in points {
                 pair(0, "VERTEX");
                 pair(8, &layer.name);
-                pair(10, &short(*x));
-                pair(20, &short(drawing.size[1] - y));
+                pair(10, &decimal((x - origin[0]) / units, 6));
+                pair(20, &decimal((origin[1] - y) / units, 6));
             }
             pair(0, "SEQEND");
             pair(8, &layer.name);
@@ -221,9 +260,26 @@ pub fn write_dxf(drawing: &Drawing) -> String {
     dxf
 }
 
+/// A name as a string of extended data; what is not ASCII by its number, as DXF has it.
+fn extended(name: &str) -> String {
+    let mut text = String::new();
+    for c in name.chars().filter(|c| !c.is_control()) {
+        let more = if c.is_ascii() {
+            c.to_string()
+        } else {
+            format!("\\U+{:04X}", u32::from(c))
+        };
+        if text.len() + more.len() > LONGEST {
+            break;
+        }
+        text.push_str(&more);
+    }
+    text
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{Drawing, Layer, Line, write_dxf, write_svg};
+    use super::{Drawing, Layer, Line, Scale, write_dxf, write_svg};
 
     fn drawing() -> Drawing {
         let line = |points: &[[f64; 2]]| Line {
@@ -235,6 +291,7 @@ mod tests {
         Drawing {
             title: "t & u".into(),
             size: [20.0, 10.0],
+            scale: None,
             layers: vec![Layer {
                 name: "shadow".into(),
                 width: 0.5,
@@ -279,7 +336,7 @@ mod tests {
                 .count()
         };
         assert_eq!((count("SECTION"), count("ENDSEC")), (3, 3));
-        assert_eq!((count("TABLE"), count("ENDTAB")), (2, 2));
+        assert_eq!((count("TABLE"), count("ENDTAB")), (3, 3));
         assert_eq!(
             (count("POLYLINE"), count("SEQEND"), count("VERTEX")),
             (2, 2, 5)
@@ -287,5 +344,26 @@ mod tests {
         assert_eq!(lines.last(), Some(&"EOF"));
         // y is up.
         assert!(dxf.contains(" 10\n1.5\n 20\n7.75\n"));
+        assert!(dxf.contains("1001\nANTUMBRA\n1071\n7\n1000\na \"b\" <c>\n"));
+    }
+
+    #[test]
+    fn with_a_scale_dxf_is_in_scene_units() {
+        let mut drawing = drawing();
+        drawing.scale = Some(Scale {
+            units: 2.0,
+            origin: [1.0, 4.0],
+        });
+        assert!(write_dxf(&drawing).contains(" 10\n0.25\n 20\n0.875\n"));
+        let svg = write_svg(&drawing);
+        assert!(svg.contains("viewBox=\"0 0 20 10\" data-scale=\"2\">"));
+        assert!(svg.contains("L1.5 2.25"));
+    }
+
+    #[test]
+    fn names_fit_into_extended_data() {
+        assert_eq!(super::extended("wall\n7"), "wall7");
+        assert_eq!(super::extended("Tür"), "T\\U+00FCr");
+        assert_eq!(super::extended(&"ä".repeat(300)).len(), 36 * 7);
     }
 }

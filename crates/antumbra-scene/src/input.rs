@@ -13,6 +13,18 @@ pub struct SceneInput {
     pub source_name: String,
 }
 
+impl SceneInput {
+    /// The classes of all parts, each once, in order; parts without a class have none.
+    #[must_use]
+    pub fn classes(&self) -> Vec<String> {
+        let parts = self.objects.iter().flat_map(|o| &o.parts);
+        let mut classes: Vec<String> = parts.filter_map(|p| p.class.clone()).collect();
+        classes.sort_unstable();
+        classes.dedup();
+        classes
+    }
+}
+
 /// An object as read: a name and any number of parts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ObjectInput {

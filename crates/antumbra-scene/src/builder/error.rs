@@ -102,9 +102,14 @@ pub enum BuildError {
 
 fn on_grid(step: Option<f64>) -> String {
     step.map_or(String::new(), |step| {
+        let step = if (1e-6..1e9).contains(&step) {
+            step.to_string()
+        } else {
+            format!("{step:e}")
+        };
         format!(
-            " on a grid of step {step}, which has to hold the scene and its view cells; if they are \
-             larger than that, give a finer grid or cells nearer by"
+            " on a grid of step {step}, which has to hold the scene and where it is looked at from; if \
+             the scene is larger than that, look from nearer by or give a finer grid"
         )
     })
 }

@@ -68,6 +68,12 @@ impl Projection {
         }
     }
 
+    /// How large a scene unit is on paper: everywhere in a parallel view, at distance one in a perspective.
+    #[must_use]
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
     /// Where the ray of a vertex meets the paper.
     #[must_use]
     pub fn ray(&self, ray: [f64; 3]) -> [f64; 2] {

@@ -97,7 +97,7 @@ pub enum MapError {
     Snap(SnapError),
     /// Nothing to look along.
     #[error(
-        "the view has no direction: the viewpoint and what it looks at must be different, finite points"
+        "the view has no direction: the viewpoint and what it looks at must be different points, no farther apart than 1e150"
     )]
     NoDirection,
     /// Up is zero or along the line of sight.
@@ -119,6 +119,11 @@ pub enum MapError {
         "the light has no area on the grid: neighboring corners must be different points; move them apart or refine the grid"
     )]
     NoLight,
+    /// The corners of an area light do not go round a convex quadrangle.
+    #[error(
+        "the corners of the light do not go round a convex quadrangle; give them in order around it"
+    )]
+    CrossedLight,
 }
 
 /// What a finished map remembers of its view.

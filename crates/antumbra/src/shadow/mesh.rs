@@ -73,19 +73,25 @@ pub struct DiscontinuityMesh {
 /// Approximate: what only points inside the light see is not found, and conics are chords.
 ///
 /// # Errors
-/// If a corner is not finite or off the grid, or two neighbors are one point of the grid.
+/// If a corner is not finite or off the grid, two neighbors are one point of the grid, or the corners do
+/// not go round a convex quadrangle. A fourth corner may be off the plane of the others.
 pub fn area_light(
     mapper: &Mapper<'_>,
     corners: [[f64; 3]; 4],
 ) -> Result<DiscontinuityMesh, MapError> {
     let scene = mapper.scene();
+    let mut points = [[0_i128; 3]; 4];
     let mut light = [[0.0; 3]; 4];
-    for (snapped, corner) in light.iter_mut().zip(corners) {
+    for (k, corner) in corners.into_iter().enumerate() {
         let point = scene.grid().snap(corner).map_err(MapError::Snap)?;
-        *snapped = scene.grid().to_scene(point);
+        points[k] = point.to_i64().map(i128::from);
+        light[k] = scene.grid().to_scene(point);
     }
     if (0..4).any(|k| light[k] == light[(k + 1) % 4]) {
         return Err(MapError::NoLight);
+    }
+    if !goes_round(points) {
+        return Err(MapError::CrossedLight);
     }
     let mut pieces = Vec::new();
     let mut marks = Vec::new();
@@ -117,6 +123,24 @@ pub fn area_light(
         }
     }
     Ok(DiscontinuityMesh { light, pieces })
+}
+
+/// Whether four points follow each other around a quadrangle: all turn the same way, or go straight on.
+fn goes_round(points: [[i128; 3]; 4]) -> bool {
+    let sub = |a: [i128; 3], b: [i128; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    let turn = |k: usize| {
+        let [a, b, c] = [k, k + 1, k + 2].map(|i| points[i % 4]);
+        let (u, v) = (sub(b, a), sub(c, b));
+        [
+            u[1] * v[2] - u[2] * v[1],
+            u[2] * v[0] - u[0] * v[2],
+            u[0] * v[1] - u[1] * v[0],
+        ]
+    };
+    let turns = [0, 1, 2, 3].map(turn);
+    let all: [i128; 3] = std::array::from_fn(|k| turns.iter().map(|t| t[k]).sum());
+    let along = |t: &[i128; 3]| (0..3).map(|k| t[k] * all[k]).sum::<i128>();
+    all != [0; 3] && turns.iter().all(|t| along(t) >= 0)
 }
 
 /// The shadow edges of a map on the polygons behind them.

@@ -322,5 +322,24 @@ fn lights_without_area_are_refused() {
     let p = [0.0, 0.0, 4.0];
     let error = area_light(&mapper, [p, p, [1.0, 1.0, 4.0], [0.0, 1.0, 4.0]]).expect_err("no area");
     assert!(error.to_string().contains("no area"), "{error}");
+    let [a, b, c, d] = [
+        [0.0, 0.0, 4.0],
+        [1.0, 0.0, 4.0],
+        [1.0, 1.0, 4.0],
+        [0.0, 1.0, 4.0],
+    ];
+    for crossed in [[a, c, b, d], [a, b, d, c], [a, b, c, [0.75, 0.25, 4.0]]] {
+        let error = area_light(&mapper, crossed).expect_err("crossed");
+        assert!(error.to_string().contains("in order"), "{error}");
+    }
+    // Both ways round, a corner that is none, one off the plane.
+    for light in [
+        [a, b, c, d],
+        [d, c, b, a],
+        [a, b, c, [0.5, 0.5, 4.0]],
+        [a, b, c, [0.0, 1.0, 4.25]],
+    ] {
+        assert!(area_light(&mapper, light).is_ok(), "{light:?}");
+    }
     assert!(point_light(&mapper, [f64::NAN, 0.0, 0.0]).is_err());
 }

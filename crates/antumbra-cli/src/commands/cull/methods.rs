@@ -4,6 +4,7 @@ use antumbra::cull::{CullOptions, LeafTest, Method, MinimumCost, Order, Probabil
 use antumbra_scene::{ObjectId, Scene};
 use clap::{Args, ValueEnum};
 
+use crate::classes::listing;
 use crate::failure::Failure;
 
 /// How to cull.
@@ -18,7 +19,7 @@ pub(super) struct MethodArgs {
     /// Where the occluders of a frame come from
     #[arg(long, value_enum, value_name = "FROM")]
     select: Option<SelectArg>,
-    /// With `--select previous`: how far away, in scene units
+    /// How far away, in scene units; goes with `--select previous`, and means it if no other is given
     #[arg(long, value_name = "LENGTH", value_parser = crate::values::positive)]
     within: Option<f64>,
     /// The most occluders of a frame
@@ -28,7 +29,7 @@ pub(super) struct MethodArgs {
     #[arg(long, value_name = "N", default_value_t = 128)]
     region_best: usize,
     /// The smallest area-angle of an occluder, in steradians
-    #[arg(long, value_name = "SR", value_parser = crate::values::positive)]
+    #[arg(long, value_name = "SR", value_parser = cost)]
     min_angle: Option<f64>,
     /// In which order occluders are inserted
     #[arg(long, value_enum, value_name = "ORDER")]
@@ -165,6 +166,11 @@ impl MethodArgs {
                 MethodArg::Inner => Method::Inner,
             };
         }
+        if self.within.is_some() && !matches!(self.select, None | Some(SelectArg::Previous)) {
+            return Err(Failure::Usage(
+                "--within goes with --select previous alone".to_owned(),
+            ));
+        }
         let distance = self.within.unwrap_or(f64::INFINITY);
         match self.select {
             Some(SelectArg::Sweep) => options.selection = Selection::Sweep,
@@ -217,9 +223,12 @@ impl MethodArgs {
             .filter(|&o| is_door(o))
             .collect();
         if !classes.is_empty() && options.doors.is_empty() {
+            let objects = scene.objects().iter();
+            let known: Vec<String> = objects.filter_map(|o| o.class.clone()).collect();
             return Err(Failure::Usage(format!(
-                "no object has the class {}; see the classes of the scene",
-                self.doors.join(" or ")
+                "--doors {}: no object has such a class; {}",
+                self.doors.join(","),
+                listing(&known)
             )));
         }
         let open = self.open.iter().map(|name| {

@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use crate::cli::Global;
 use crate::failure::Failure;
 use crate::load::{SceneArgs, load};
-use crate::output::{check_writable, seconds, write_file};
+use crate::output::{check_outputs, seconds, write_file};
 use crate::values::pixels;
 
 use methods::MethodArgs;
@@ -44,9 +44,9 @@ pub(crate) struct CullArgs {
     /// Render an item buffer of each frame and list every wrong cull
     #[arg(long)]
     verify: bool,
-    /// Width and height of the item buffer; its aspect is that of --aspect
-    #[arg(long, value_name = "WxH", default_value = "1920x1080", value_parser = pixels)]
-    size: [usize; 2],
+    /// Width and height of the item buffer; its aspect is that of --aspect [default: 1080 pixels high]
+    #[arg(long, value_name = "WxH", value_parser = pixels, requires = "verify")]
+    size: Option<[usize; 2]>,
     /// Write one line a frame
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -98,26 +98,35 @@ pub(super) struct Frame {
     pub work: CullWork,
 }
 
+impl CullArgs {
+    /// Width and height of the item buffer.
+    fn buffer(&self) -> Result<[usize; 2], Failure> {
+        let Some(size) = self.size else {
+            let width = (1080.0 * self.aspect).round().clamp(16.0, 8192.0);
+            return Ok([width as usize, 1080]);
+        };
+        let [w, h] = size.map(|n| n as f64);
+        // As near as whole pixels come.
+        if (w - h * self.aspect).abs() > 1.0 {
+            return Err(Failure::Usage(format!(
+                "--size {w}x{h} has not the aspect of the view; give both, as --size 1920x1080 --aspect 16:9"
+            )));
+        }
+        Ok(size)
+    }
+}
+
 /// Culls the path, writes what was asked for, prints the frames.
 pub(crate) fn run(args: &CullArgs, global: &Global) -> Result<(), Failure> {
     let inputs = [args.scene.scene.as_path(), args.path.as_path()];
-    let outputs = [&args.csv, &args.svg, &args.top, &args.output];
-    let outputs: Vec<&PathBuf> = outputs.into_iter().flatten().collect();
-    for (i, path) in outputs.iter().enumerate() {
-        check_writable(path, &inputs)?;
-        if outputs[..i].contains(path) {
-            return Err(Failure::Usage(format!(
-                "{}: two results would be written to this file; give each its own name",
-                path.display()
-            )));
-        }
-    }
-    let [w, h] = args.size.map(|n| n as f64);
-    if args.verify && (w - h * args.aspect).abs() > 1e-6 * w {
-        return Err(Failure::Usage(format!(
-            "--size {w}x{h} has not the aspect of the view; give both, as --size 1920x1080 --aspect 16:9"
-        )));
-    }
+    let outputs = [
+        (args.csv.as_ref(), "csv"),
+        (args.svg.as_ref(), "svg"),
+        (args.top.as_ref(), "svg"),
+        (args.output.as_ref(), "json"),
+    ];
+    check_outputs(&outputs, &inputs)?;
+    let size = args.buffer()?;
     let cameras = frames::read(&args.path, args.aspect)?;
     if args.top.is_some() && args.frame >= cameras.len() {
         return Err(Failure::Usage(format!(
@@ -144,14 +153,14 @@ pub(crate) fn run(args: &CullArgs, global: &Global) -> Result<(), Failure> {
     let frames = walk(&mut culler, &cameras, args, make)?;
     let verdict = args
         .verify
-        .then(|| check(args, global, scene, &open, &cameras, &frames));
+        .then(|| check(size, global, scene, &open, &cameras, &frames));
     let start = Instant::now();
     let truth = verdict.as_ref().map(|v| v.by_frame.as_slice());
     write(args, scene, &frames, truth, &cameras, make)?;
     let mut result = report(&frames, &culler);
     let called: u64 = frames.iter().map(|f| f.visible.len() as u64).sum();
     if let (Some(verdict), Value::Object(keys)) = (&verdict, &mut result) {
-        keys.insert("verify".into(), verdict.json(called, args.size, scene));
+        keys.insert("verify".into(), verdict.json(called, size, scene));
     }
     if let Value::Object(keys) = &mut result {
         keys.insert("load_seconds".into(), json!(seconds(loaded.load_time)));
@@ -206,7 +215,7 @@ fn share(values: &mut [f64], share: f64) -> f64 {
 }
 
 fn check(
-    args: &CullArgs,
+    size: [usize; 2],
     global: &Global,
     scene: &Scene,
     open: &[ObjectId],
@@ -217,7 +226,7 @@ fn check(
         .output()
         .progress(cameras.len() as u64, "item buffers");
     let visible: Vec<Vec<u32>> = frames.iter().map(|f| f.visible.clone()).collect();
-    let verdict = verify::verify(scene, open, cameras, &visible, args.size, || bar.inc(1));
+    let verdict = verify::verify(scene, open, cameras, &visible, size, || bar.inc(1));
     bar.finish_and_clear();
     verdict
 }

@@ -14,8 +14,8 @@ use serde_json::{Map, Value, json};
 use crate::cli::Global;
 use crate::failure::Failure;
 use crate::load::{Loaded, SceneArgs, load};
-use crate::output::{check_writable, seconds, write_file};
-use crate::values::{PointArg, pixels};
+use crate::output::{check_outputs, seconds, write_file};
+use crate::values::{PointArg, crease_angle, pixels, view_angle};
 
 pub(crate) use export::{element, polygon};
 
@@ -40,13 +40,14 @@ pub(crate) struct MapArgs {
     )]
     up_is: PointArg,
     /// The full vertical angle of the view, in degrees
-    #[arg(long, value_name = "DEG", default_value_t = 60.0)]
+    #[arg(long, value_name = "DEG", default_value_t = 60.0, value_parser = view_angle)]
     fov: f64,
-    /// Parallel lines along the line of sight, over the whole scene, instead of a perspective
-    #[arg(long, requires = "to")]
+    /// Parallel lines along the line of sight, over the whole scene, instead of a perspective; DXF is then
+    /// in scene units
+    #[arg(long, requires = "to", conflicts_with = "fov")]
     ortho: bool,
     /// Two polygons that meet at a smaller angle, in degrees, go on smoothly
-    #[arg(long, value_name = "DEG", default_value_t = 15.0)]
+    #[arg(long, value_name = "DEG", default_value_t = 15.0, value_parser = crease_angle)]
     crease: f64,
     /// Which edges to remove from the map
     #[arg(long, value_enum, value_name = "EDGES", default_value_t)]
@@ -60,7 +61,8 @@ pub(crate) struct MapArgs {
     /// Draw what is behind as dashed lines, too
     #[arg(long)]
     hidden: bool,
-    /// Draw flat edges, too
+    /// Draw flat edges, too: those of objects that are flush and, without `--dissolve flat`, those within
+    /// an object
     #[arg(long)]
     flat: bool,
     /// Width and height of the drawing
@@ -94,12 +96,8 @@ enum DissolveArg {
 }
 
 impl MapArgs {
-    fn options(&self) -> Result<MapOptions, Failure> {
-        if !(0.0..=180.0).contains(&self.crease) {
-            let text = "--crease is an angle from 0 to 180 degrees";
-            return Err(Failure::Usage(text.to_owned()));
-        }
-        Ok(MapOptions {
+    fn options(&self) -> MapOptions {
+        MapOptions {
             crease: self.crease.to_radians(),
             dissolve: match self.dissolve {
                 DissolveArg::Nothing => Dissolve::Nothing,
@@ -107,7 +105,26 @@ impl MapArgs {
                 DissolveArg::Flat => Dissolve::Flat,
             },
             ..MapOptions::default()
-        })
+        }
+    }
+
+    /// Refuses what cannot work before any work is done.
+    fn check(&self) -> Result<(), Failure> {
+        let outputs = [
+            (self.svg.as_ref(), "svg"),
+            (self.dxf.as_ref(), "dxf"),
+            (self.output.as_ref(), "json"),
+        ];
+        check_outputs(&outputs, &[self.scene.scene.as_path()])?;
+        let drawn = self.svg.is_some() || self.dxf.is_some();
+        for (given, option) in [(self.hidden, "--hidden"), (self.flat, "--flat")] {
+            if given && !drawn {
+                return Err(Failure::Usage(format!(
+                    "{option} is about drawings: add --svg FILE or --dxf FILE"
+                )));
+            }
+        }
+        Ok(())
     }
 
     fn view(&self) -> Result<Viewpoint, Failure> {
@@ -127,10 +144,8 @@ impl MapArgs {
 
 /// Makes the map, writes what was asked for, prints counts and solid angles.
 pub(crate) fn run(args: &MapArgs, global: &Global) -> Result<(), Failure> {
-    let (options, view) = (args.options()?, args.view()?);
-    for path in [&args.svg, &args.dxf, &args.output].into_iter().flatten() {
-        check_writable(path, &[args.scene.scene.as_path()])?;
-    }
+    let (options, view) = (args.options(), args.view()?);
+    args.check()?;
     let eye = args.eye.0;
     let hull = (!args.ortho).then_some((eye, eye));
     let loaded = load(&args.scene, global, hull)?;
@@ -145,7 +160,7 @@ pub(crate) fn run(args: &MapArgs, global: &Global) -> Result<(), Failure> {
     })?;
     let took = seconds(start.elapsed());
     let start = Instant::now();
-    write(args, scene, &map)?;
+    write(args, global, scene, &map)?;
     let written = seconds(start.elapsed());
     let mut result = report(scene, &map);
     let mut add = |key: &str, value: f64| result.insert(key.to_owned(), json!(value));
@@ -154,11 +169,19 @@ pub(crate) fn run(args: &MapArgs, global: &Global) -> Result<(), Failure> {
     add("build_seconds", seconds(loaded.build_time + prepared));
     add("write_seconds", written);
     note_edge_on(args, global, &loaded);
+    if let Some(used) = map.eye(scene) {
+        note_moved(global, "viewpoint", eye, used);
+    }
     let text = sentence(&map, &result);
     global.output().result(&Value::Object(result), &text)
 }
 
-fn write(args: &MapArgs, scene: &Scene, map: &VisibilityMap) -> Result<(), Failure> {
+fn write(
+    args: &MapArgs,
+    global: &Global,
+    scene: &Scene,
+    map: &VisibilityMap,
+) -> Result<(), Failure> {
     if let Some(path) = &args.output {
         write_file(path, export::export(scene, map).to_string().as_bytes())?;
     }
@@ -166,6 +189,10 @@ fn write(args: &MapArgs, scene: &Scene, map: &VisibilityMap) -> Result<(), Failu
         return Ok(());
     }
     let drawing = paper::draw(args, scene, map)?;
+    if drawing.layers.iter().all(|layer| layer.lines.is_empty()) {
+        let text = "note: nothing is in view: the drawing is empty";
+        global.output().note(text);
+    }
     if let Some(path) = &args.svg {
         let svg = antumbra_io::drawing::write_svg(&drawing);
         write_file(path, svg.as_bytes())?;
@@ -185,6 +212,17 @@ fn note_edge_on(args: &MapArgs, global: &Global, loaded: &Loaded) {
     if let Some(name) = touched(&loaded.scene, args.eye.0) {
         global.output().note(&format!(
             "note: the viewpoint lies on a polygon of `{name}`, which is seen edge-on and hides nothing"
+        ));
+    }
+}
+
+/// Says if a point was moved by a grid that was asked for; by the finest one it is moved by nothing that
+/// counts.
+pub(crate) fn note_moved(global: &Global, what: &str, given: [f64; 3], used: [f64; 3]) {
+    if global.grid.is_some() && given != used {
+        let [x, y, z] = used;
+        global.output().note(&format!(
+            "note: the {what} was moved to {x},{y},{z}, a point of the grid"
         ));
     }
 }
@@ -229,6 +267,9 @@ fn report(scene: &Scene, map: &VisibilityMap) -> Map<String, Value> {
     let culled = 1.0 - work.sweep.leaves_opened as f64 / leaves;
     let mut result = Map::new();
     let mut add = |key: &str, value: Value| result.insert(key.to_owned(), value);
+    if let Some(eye) = map.eye(scene) {
+        add("eye", json!(eye));
+    }
     add("vertices", json!(map.vertices().len()));
     add("edges", json!(map.edges().len()));
     add("faces", json!(map.faces().len()));
@@ -251,13 +292,18 @@ fn sentence(map: &VisibilityMap, result: &Map<String, Value>) -> String {
         let count = map.edges().iter().filter(|e| e.class == class).count();
         format!("{count} {}", class.name())
     });
+    let polygons = &result["visible_polygons"];
     format!(
-        "{} vertices, {} edges ({}), {} faces of {} polygons, in {:.1} ms",
+        "{} vertices, {} edges ({}), {} faces, {polygons} {}, in {:.1} ms",
         map.vertices().len(),
         map.edges().len(),
         classes.join(", "),
         map.faces().len(),
-        result["visible_polygons"],
+        if *polygons == 1 {
+            "polygon"
+        } else {
+            "polygons"
+        },
         result["seconds"].as_f64().unwrap_or_default() * 1e3
     )
 }

@@ -3,7 +3,7 @@
 use antumbra::map::EdgeClass;
 use antumbra::map::VisibilityMap;
 use antumbra::map::drawing::{Projection, Stroke, hidden_strokes, strokes};
-use antumbra_io::drawing::{Drawing, Layer, Line};
+use antumbra_io::drawing::{Drawing, Layer, Line, Scale};
 use antumbra_scene::Scene;
 
 use super::MapArgs;
@@ -37,9 +37,14 @@ pub(super) fn draw(args: &MapArgs, scene: &Scene, map: &VisibilityMap) -> Result
         layers.push(layer(scene, class.name(), width, false, lines));
     }
     let name = args.scene.scene.file_stem().unwrap_or_default();
+    let scale = args.ortho.then(|| Scale {
+        units: projection.scale(),
+        origin: projection.point([0.0; 3]),
+    });
     Ok(Drawing {
         title: name.to_string_lossy().into_owned(),
         size,
+        scale,
         layers,
     })
 }

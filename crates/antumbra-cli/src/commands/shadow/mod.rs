@@ -18,7 +18,7 @@ use crate::failure::Failure;
 use crate::load::{Loaded, SceneArgs, load};
 use crate::output::{check_writable, seconds, write_file};
 use crate::picture::{Lamp, LightPicture, light_picture, png};
-use crate::values::{PointArg, pixels};
+use crate::values::{PointArg, pixels, view_angle};
 use light::{Light, LightArg};
 
 /// Options of `shadow`.
@@ -45,7 +45,7 @@ pub(crate) struct ShadowArgs {
         long,
         value_name = "X,Y,Z",
         allow_hyphen_values = true,
-        requires = "to"
+        requires_all = ["to", "png"]
     )]
     eye: Option<PointArg>,
     /// What it looks at
@@ -57,7 +57,7 @@ pub(crate) struct ShadowArgs {
     )]
     to: Option<PointArg>,
     /// The full vertical angle of the picture, in degrees
-    #[arg(long, value_name = "DEG", default_value_t = 60.0)]
+    #[arg(long, value_name = "DEG", default_value_t = 60.0, value_parser = view_angle)]
     fov: f64,
     /// Width and height of the picture
     #[arg(long, value_name = "WxH", default_value = "1200x800", value_parser = pixels)]
@@ -138,10 +138,6 @@ fn check(args: &ShadowArgs) -> Result<Format, Failure> {
     }
     if let (Some(PointArg(eye)), Some(PointArg(to))) = (args.eye, args.to) {
         camera_axes(eye, to, UP).map_err(|e| Failure::Usage(e.to_string()))?;
-        if !(args.fov > 0.0 && args.fov < 180.0) {
-            let text = "--fov is an angle between 0 and 180 degrees";
-            return Err(Failure::Usage(text.to_owned()));
-        }
     }
     let Some(path) = &args.output else {
         return Ok(Format::Json);
@@ -240,9 +236,16 @@ fn report(
                     "note: the light lies on a polygon of `{name}`, which is edge-on and casts no shadow"
                 ));
             }
+            if let LightArg::Point(given) = args.light {
+                super::map::note_moved(global, "light", given, shadows.light(scene));
+            }
+            result.insert("light".to_owned(), json!(shadows.light(scene)));
             of_fragments(shadows, &mut result)
         }
-        Answer::Mesh(mesh) => of_mesh(mesh, &mut result),
+        Answer::Mesh(mesh) => {
+            result.insert("light".to_owned(), json!(mesh.light));
+            of_mesh(mesh, &mut result)
+        }
     };
     let mut add = |key: &str, time: Duration| result.insert(key.to_owned(), json!(seconds(time)));
     add("seconds", took);
