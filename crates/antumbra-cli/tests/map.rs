@@ -125,6 +125,44 @@ fn a_parallel_drawing_is_true_to_scale() {
     assert!((scale - 0.96 * 1200.0 / 5.0).abs() < 1e-9, "{scale}");
 }
 
+/// The dashed lines of a drawing.
+fn dashed(folder: &Folder, view: &str) -> Vec<String> {
+    folder
+        .run(&format!("map {view} --hidden --svg hidden.svg"))
+        .done();
+    let svg = String::from_utf8(folder.bytes("hidden.svg")).expect("text");
+    let paths = svg
+        .lines()
+        .filter(|l| l.starts_with("<path class=\"hidden"));
+    paths.map(str::to_owned).collect()
+}
+
+#[test]
+fn hidden_lines_are_drawn_once_and_not_inside_flat_faces() {
+    let folder = Folder::new();
+    let cross = "o cross\nv 0 1 0\nv 3 1 0\nv 3 2 0\nv 0 2 0\nv 1 0 0\nv 2 0 0\nv 2 3 0\nv 1 3 0\n\
+        f 1 2 3 4\nf 5 6 7 8\n";
+    let screen = "o screen\nv -1 -1 1\nv 4 -1 1\nv 4 4 1\nv -1 4 1\nf 9 10 11 12\n";
+    let decal = "o wall\nv 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nf 1 2 3 4\n\
+        o decal\nv 1 1 0\nv 3 1 0\nv 3 3 0\nv 1 3 0\nf 5 6 7 8\n";
+    let cube = "o cube\nv 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 0 0 2\nv 2 0 2\nv 2 2 2\nv 0 2 2\n\
+        f 1 2 3 4\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    folder.write("cross.obj", cross);
+    folder.write("screened.obj", format!("{cross}{screen}"));
+    folder.write("decal.obj", decal);
+    folder.write("cube.obj", cube);
+    let above = "--eye 1.5,1.4,6 --to 1.5,1.5,0 --up-is 0,1,0";
+    for name in ["cross", "decal"] {
+        assert!(dashed(&folder, &format!("{name}.obj {above}")).is_empty());
+        assert!(dashed(&folder, &format!("{name}.obj {above} --dissolve flat")).is_empty());
+    }
+    // The outline of a cross has twelve edges, here on eight lines.
+    assert_eq!(dashed(&folder, &format!("screened.obj {above}")).len(), 12);
+    // The back lies under the front.
+    assert!(dashed(&folder, "cube.obj --eye 1,-5,1 --to 1,0,1 --ortho").is_empty());
+    assert_eq!(dashed(&folder, "cube.obj --eye 9,7,5 --to 1,1,1").len(), 3);
+}
+
 #[test]
 fn unknown_classes_do_not_pass_in_silence() {
     let folder = folder();

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use antumbra_kernel::Point;
 use antumbra_scene::{ObjectId, Scene};
 
+use super::overlap::Drawn;
 use super::{EdgeClass, MapError, VisibilityMap, camera_axes, hidden};
 
 /// From directions (or points of parallel lines) to paper: x to the right, y down.
@@ -180,16 +181,20 @@ pub fn strokes(
 
 /// The parts of feature edges of the scene that are in the view and behind something, as strokes of
 /// class *corner*. Where they end is rounded. What is not on a paper of some width and height, from the
-/// origin, is left out.
+/// origin, is left out, and what lies under visible strokes or under another hidden one.
 #[must_use]
 pub fn hidden_strokes(
     map: &VisibilityMap,
     scene: &Scene,
     projection: &Projection,
     crease: f64,
-    paper: [f64; 2],
-    resolution: f64,
+    (paper, resolution): ([f64; 2], f64),
+    visible: &[Stroke],
 ) -> Vec<Stroke> {
+    let mut drawn = Drawn::new(2.0 * resolution);
+    for pair in visible.iter().flat_map(|s| s.points.windows(2)) {
+        drawn.add([pair[0], pair[1]]);
+    }
     let mut out = Vec::new();
     for (object, ends) in hidden::segments(map, scene, crease) {
         let Some(points) = projection
@@ -200,12 +205,16 @@ pub fn hidden_strokes(
             continue;
         };
         let points = points.map(|p| rounded(p, resolution));
-        if points[0] != points[1] {
+        if points[0] == points[1] {
+            continue;
+        }
+        for part in drawn.uncovered(points) {
+            drawn.add(part);
             out.push(Stroke {
                 class: EdgeClass::Corner,
                 object,
                 hidden: true,
-                points: points.to_vec(),
+                points: part.map(|p| rounded(p, resolution)).to_vec(),
             });
         }
     }

@@ -1,13 +1,15 @@
 //! Hidden lines: what is left of the scene's feature edges when the seen parts are taken away.
 //!
-//! Edges are compared on their line in space: edges of several polygons that overlap there are one, and
-//! an edge along which exactly two polygons of an object go on smoothly is no feature. Which parts lie on
-//! one line is exact; where the seen parts end is rounded, like everything that is drawn.
+//! Edges are compared on their line in space: edges of several polygons that overlap there are one. An edge
+//! along which exactly two polygons of an object go on smoothly is no feature, nor one inside a flat face: all
+//! polygons along it lie in one plane, in which another polygon goes on on both sides. Which parts lie on one line
+//! or in one plane is exact; where the seen parts end is rounded, like everything that is drawn.
 
 use std::collections::BTreeMap;
 
-use antumbra_kernel::{Point, cross, sub};
+use antumbra_kernel::{Aabb, Plane, Point, cross, sub};
 use antumbra_scene::{ObjectId, PolygonId, Scene};
+use rustc_hash::FxHashMap;
 
 use super::VisibilityMap;
 use super::drawing::place;
@@ -55,6 +57,7 @@ pub(super) fn segments(
         }
     }
     add_seen(map, scene, &mut lines);
+    let flat = FlatFaces::new(scene);
     let mut out = Vec::new();
     for (line, on) in &lines {
         let Some((origin, at)) = on.origin else {
@@ -65,9 +68,19 @@ pub(super) fn segments(
             std::array::from_fn(|k| p[k] + (t - at) * line.0[k] as f64 * scene.grid().step())
         };
         let mut taken = merged(on.seen.clone());
+        let origin = origin.to_f64();
+        let in_steps = |t: f64| std::array::from_fn(|k| origin[k] + (t - at) * line.0[k] as f64);
         for (&object, spans) in &on.spans {
-            let features = merged(features(scene, spans, crease));
-            for part in features {
+            let features = features(scene, spans, crease).into_iter();
+            let features = features.flat_map(|part| {
+                let covers = |s: &&Span| s.ends[0] <= part[0] && part[1] <= s.ends[1];
+                let along = on.spans.values().flatten().filter(covers);
+                let inside = flat.inside(scene, along.map(|s| s.polygon), part.map(in_steps));
+                let length = part[1] - part[0];
+                let inside = inside.map(|ends| ends.map(|t| part[0] + t * length));
+                without(part, &merged(inside.collect()))
+            });
+            for part in merged(features.collect()) {
                 let hidden = without(part, &taken);
                 out.extend(hidden.into_iter().map(|h| (object, h.map(point))));
                 taken = merged([taken, vec![part]].concat());
@@ -75,6 +88,98 @@ pub(super) fn segments(
         }
     }
     out
+}
+
+/// A plane: its primitive normal, the first non-zero component positive, and its offset.
+type Flat = ([i64; 3], i128);
+
+/// The polygons of each plane, with their boxes.
+struct FlatFaces {
+    by_plane: FxHashMap<Flat, Vec<(Aabb, PolygonId)>>,
+}
+
+impl FlatFaces {
+    fn new(scene: &Scene) -> Self {
+        let mut by_plane: FxHashMap<Flat, Vec<(Aabb, PolygonId)>> = FxHashMap::default();
+        for polygon in scene.polygons().filter(|p| p.occludes) {
+            if let Some(around) = Aabb::around(polygon.corners.iter().copied()) {
+                let plane = flat_of(polygon.plane);
+                by_plane
+                    .entry(plane)
+                    .or_default()
+                    .push((around, polygon.id));
+            }
+        }
+        Self { by_plane }
+    }
+
+    /// The parts of a segment, from 0 to 1, that lie inside other polygons of the plane in which all polygons
+    /// along it lie; none if they lie in several.
+    fn inside<'a>(
+        &'a self,
+        scene: &'a Scene,
+        mut along: impl Iterator<Item = PolygonId>,
+        segment: [[f64; 3]; 2],
+    ) -> impl Iterator<Item = [f64; 2]> + 'a {
+        let plane = |id: PolygonId| flat_of(scene.polygon(id).plane);
+        let first = along.next().map(plane);
+        let flat = first.filter(|first| along.all(|id| plane(id) == *first));
+        let there = flat.and_then(|flat| Some((flat.0, self.by_plane.get(&flat)?)));
+        there.into_iter().flat_map(move |(normal, there)| {
+            let near = there.iter().filter(move |(around, _)| {
+                let (low, high) = (around.min.to_f64(), around.max.to_f64());
+                let [a, b] = segment;
+                (0..3).all(|k| low[k] <= a[k].max(b[k]) && a[k].min(b[k]) <= high[k])
+            });
+            near.filter_map(move |(_, id)| within(scene.polygon(*id).corners, normal, segment))
+        })
+    }
+}
+
+fn flat_of(plane: &Plane) -> Flat {
+    let n = plane.normal;
+    let common = n.iter().fold(0, |g, &c| gcd(g, c.unsigned_abs())).max(1) as i64;
+    let first = n.iter().copied().find(|&c| c != 0).unwrap_or(1).signum();
+    let scale = common * first;
+    (n.map(|c| c / scale), plane.offset / i128::from(scale))
+}
+
+/// From where to where, from 0 to 1, a segment in a convex polygon's plane lies inside of it: farther from its edges
+/// than rounding.
+fn within(corners: &[Point], normal: [i64; 3], segment: [[f64; 3]; 2]) -> Option<[f64; 2]> {
+    // Without the axis along which the plane is seen best.
+    let axis = (0..3)
+        .max_by_key(|&k| normal[k].unsigned_abs())
+        .unwrap_or(2);
+    let flat = |p: [f64; 3]| [p[(axis + 1) % 3], p[(axis + 2) % 3]];
+    let corners: Vec<[f64; 2]> = corners.iter().map(|c| flat(c.to_f64())).collect();
+    let side = |a: [f64; 2], b: [f64; 2], p: [f64; 2]| {
+        let d = [b[0] - a[0], b[1] - a[1]];
+        (d[0] * (p[1] - a[1]) - d[1] * (p[0] - a[0])) / d[0].hypot(d[1]).max(1.0)
+    };
+    let next = |i: usize| corners[(i + 1) % corners.len()];
+    let around: f64 = (1..corners.len())
+        .map(|i| side(corners[0], corners[i], next(i)))
+        .sum();
+    let ends = segment.map(flat);
+    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+    let mut sides = Vec::with_capacity(corners.len());
+    for (i, &corner) in corners.iter().enumerate() {
+        let [s, t] = ends.map(|p| side(corner, next(i), p) * around.signum());
+        sides.push([s, t]);
+        if s < 0.0 && t < 0.0 {
+            return None;
+        }
+        let cut = s / (s - t);
+        if s < 0.0 {
+            enter = enter.max(cut);
+        } else if t < 0.0 {
+            leave = leave.min(cut);
+        }
+    }
+    let middle = (enter + leave) / 2.0;
+    let inside = sides.iter().all(|[s, t]| s + middle * (t - s) > 0.5);
+    (enter < leave && inside).then_some([enter, leave])
 }
 
 /// Notes on each line which parts of it the map shows.

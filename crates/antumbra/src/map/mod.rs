@@ -34,6 +34,7 @@ mod classify;
 pub mod drawing;
 mod hidden;
 mod mesh;
+mod overlap;
 mod view;
 mod walls;
 

@@ -19,10 +19,7 @@ pub(super) fn draw(args: &MapArgs, scene: &Scene, map: &VisibilityMap) -> Result
     let projection = projection(args, scene, map, size)?;
     let crease = args.crease.to_radians();
     let mut layers = Vec::new();
-    if args.hidden {
-        let lines = hidden_strokes(map, scene, &projection, crease, size, RESOLUTION);
-        layers.push(layer(scene, "hidden", 0.5, true, lines));
-    }
+    let mut visible = Vec::new();
     for (class, width) in [
         (EdgeClass::Flat, 0.4),
         (EdgeClass::Corner, 0.8),
@@ -34,7 +31,16 @@ pub(super) fn draw(args: &MapArgs, scene: &Scene, map: &VisibilityMap) -> Result
             continue;
         }
         let lines = strokes(map, scene, &projection, &[class], RESOLUTION);
+        if args.hidden {
+            visible.extend_from_slice(&lines);
+        }
         layers.push(layer(scene, class.name(), width, false, lines));
+    }
+    if args.hidden {
+        let paper = (size, RESOLUTION);
+        let lines = hidden_strokes(map, scene, &projection, crease, paper, &visible);
+        // Lowest.
+        layers.insert(0, layer(scene, "hidden", 0.5, true, lines));
     }
     let name = args.scene.scene.file_stem().unwrap_or_default();
     let scale = args.ortho.then(|| Scale {
