@@ -3,7 +3,9 @@
 //!
 //! The scene is snapped once to an integer grid; everything after is exact. See [`region`] for
 //! potentially visible sets, [`pair`] for two polygons, objects or points, [`ray`](mod@ray) for one
-//! line, [`map`] for everything seen from a point, [`shadow`] for what a light reaches.
+//! line, [`map`] for everything seen from a point, [`shadow`] for what a light reaches, [`plan`] for
+//! floor plans and city maps in the plane. [`cull`] is for cameras in real time: in floats, without
+//! certificates, and never wrong about what it culls.
 
 pub mod cull;
 pub mod map;
