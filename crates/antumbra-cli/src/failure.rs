@@ -3,6 +3,8 @@
 use std::fmt;
 use std::path::Path;
 
+use antumbra_io::said;
+
 /// Why a command did not do what it was asked to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Failure {
@@ -32,16 +34,7 @@ impl Failure {
         Self::Path(format!(
             "{}: cannot be written ({}); check the path and its permissions",
             path.display(),
-            plain(cause)
-        ))
-    }
-
-    /// A file that cannot be read.
-    pub(crate) fn unreadable(path: &Path, cause: &std::io::Error) -> Self {
-        Self::Path(format!(
-            "{}: cannot be read ({}); check the path and its permissions",
-            path.display(),
-            plain(cause)
+            said(cause)
         ))
     }
 }
@@ -52,11 +45,4 @@ impl fmt::Display for Failure {
             self;
         f.write_str(text)
     }
-}
-
-/// What the system said, in lower case and without its number.
-fn plain(cause: &std::io::Error) -> String {
-    let text = cause.to_string();
-    let text = text.split(" (os error").next().unwrap_or_default();
-    text.to_lowercase()
 }

@@ -50,6 +50,11 @@ impl Output {
     }
 }
 
+/// A number of things in words.
+pub(crate) fn counted(n: usize, one: &str, many: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { many })
+}
+
 /// Prints a line to stdout. A reader that went away early is no failure.
 pub(crate) fn line(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();

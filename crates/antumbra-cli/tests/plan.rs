@@ -3,28 +3,8 @@
 mod tool;
 
 use serde_json::Value;
+use tool::plans::{folder, fragments, plan};
 use tool::{Folder, Run};
-
-/// A square room with a gap in a wall inside.
-const ROOM: &str = "# a room\n0 0 10 0\n10 0 10 10\n10 10 0 10\n0 10 0 0\n4 4 6 4 screen\n";
-
-fn folder() -> Folder {
-    let folder = Folder::new();
-    folder.write("room.seg", ROOM);
-    folder
-}
-
-fn plan(folder: &Folder, file: &str, cell: &str, more: &[&str]) -> Run {
-    let mut args = vec!["plan", file, "--cell", cell, "--json", "--quiet"];
-    args.extend(more);
-    folder.run_args(&args, b"")
-}
-
-fn fragments(result: &Value, id: u64) -> Value {
-    let list = result["visible"].as_array().expect("a list");
-    let found = list.iter().find(|v| v["id"] == id);
-    found.map_or(Value::Null, |v| v["fragments"].clone())
-}
 
 /// Neither of two cells sees through a wall along the side of the other, whichever is asked first.
 #[test]
@@ -160,7 +140,7 @@ fn batches_matrices_and_pictures() {
         "cells.json",
         format!(r#"{{"type":"FeatureCollection","features":[{features}]}}"#),
     );
-    let batch = folder.run("plan room.seg --cells cells.json --json -q --svg a.svg --line-space l.svg --geojson g.json -o f.json --isovist").json();
+    let batch = folder.run("plan room.seg --cells cells.json --json -q --svg a.svg --geojson g.json -o f.json --isovist").json();
     let cells = batch["cells"].as_array().expect("a list");
     assert_eq!(
         cells.iter().map(|c| c["id"].as_i64()).collect::<Vec<_>>(),
@@ -180,7 +160,8 @@ fn batches_matrices_and_pictures() {
     }
     assert!(!svg.contains("NaN") && !svg.contains("inf"));
     // A point is drawn as a mark that can be seen.
-    plan(&folder, "room.seg", "5,5", &["--svg", "p.svg"]).done();
+    let pictures = ["--svg", "p.svg", "--line-space", "l.svg"];
+    plan(&folder, "room.seg", "5,5", &pictures).done();
     let svg = String::from_utf8(folder.bytes("p.svg")).expect("text");
     let mark = svg.split("id=\"cell\"").nth(1).expect("a cell");
     assert_eq!(mark.matches(" L").count(), 3, "{mark}");
@@ -320,8 +301,6 @@ fn batches_do_not_depend_on_threads() {
                 "f.json",
                 "--svg",
                 "a.svg",
-                "--line-space",
-                "l.svg",
                 "--json",
                 "-q",
             ],
@@ -332,7 +311,7 @@ fn batches_do_not_depend_on_threads() {
         for key in ["seconds", "load_seconds", "build_seconds", "write_seconds"] {
             said[key] = Value::Null;
         }
-        let names = ["g.json", "f.json", "a.svg", "l.svg"];
+        let names = ["g.json", "f.json", "a.svg"];
         let files = names.map(|name| folder.bytes(name)).into_iter();
         files.chain([said.to_string().into_bytes()]).collect()
     };
@@ -359,10 +338,16 @@ fn bad_plans_and_cells_are_refused_with_their_place() {
         "none.dxf",
         "0\nSECTION\n2\nENTITIES\n0\nINSERT\n2\nnone\n0\nENDSEC\n0\nEOF\n",
     );
+    folder.write("five.seg", "0 0 1 1 wall\n0 0 1 1 2\n");
     folder.write("empty.seg", "");
     folder.write("bytes.seg", b"\xff\xfe\x00\x01");
     for (file, code, says) in [
-        ("missing.seg", 4, "cannot be read"),
+        (
+            "missing.seg",
+            4,
+            "cannot be read (no such file or directory);",
+        ),
+        ("five.seg", 3, "line 2: a fifth number, `2`, follows"),
         ("cut.geojson", 3, "JSON line 1"),
         ("word.seg", 3, "line 2: `one` is not a number"),
         ("path.svg", 3, "line 2: the path data is damaged"),
@@ -396,7 +381,13 @@ fn bad_plans_and_cells_are_refused_with_their_place() {
         r#"{"type":"Polygon","coordinates":[[[0,0],[9,0],[9,9],[0,0]],[[3,1],[4,1],[4,2],[3,1]]]}"#,
     );
     let run = folder.run("plan room.seg --cells hole.json -q");
-    assert!(run.failure(3).contains("feature 0: the cell has 1 holes"));
+    assert!(run.failure(3).contains("feature 0: the cell has 1 hole;"));
+    let run = folder.run("plan room.seg --cells missing.json -q");
+    let text = run.failure(4);
+    assert!(text.contains("missing.json: cannot be read (no such file or directory);"));
+    folder.write("empty.json", " \n");
+    let run = folder.run("plan room.seg --cells empty.json -q");
+    assert!(run.failure(3).starts_with("empty.json: the file is empty;"));
     let run = folder.run_args(
         &["plan", "room.seg", "--cell", "0,0", "--grid", "1e-9", "-q"],
         b"",

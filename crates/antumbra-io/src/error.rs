@@ -10,13 +10,16 @@ use std::io;
 /// use antumbra_io::{ReadError, read_scene};
 /// let error = read_scene("no/such/file.glb".as_ref()).unwrap_err();
 /// assert!(error.is_path_error());
-/// assert!(error.to_string().starts_with("no/such/file.glb: cannot be read"));
+/// assert!(error.to_string().starts_with("no/such/file.glb: cannot be read (no such file"));
 /// ```
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadError {
     /// The path itself cannot be read (no such file, no permission, a folder).
-    #[error("{file}: cannot be read ({cause}); check the path and its permissions")]
+    #[error(
+        "{file}: cannot be read ({}); check the path and its permissions",
+        said(cause)
+    )]
     Path {
         /// The path as given.
         file: String,
@@ -39,6 +42,14 @@ impl ReadError {
     pub fn is_path_error(&self) -> bool {
         matches!(self, Self::Path { .. })
     }
+}
+
+/// What the system said, in lower case and without its number: how messages about paths word it.
+#[must_use]
+pub fn said(cause: &io::Error) -> String {
+    let text = cause.to_string();
+    let text = text.split(" (os error").next().unwrap_or_default();
+    text.to_lowercase()
 }
 
 /// A fault at a place of a file: what was found there and what to do about it.

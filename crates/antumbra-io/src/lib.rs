@@ -57,7 +57,7 @@ mod proof;
 #[cfg(feature = "pvs")]
 pub mod pvs;
 
-pub use error::{Damage, Place, ReadError};
+pub use error::{Damage, Place, ReadError, said};
 pub use format::Format;
 #[cfg(feature = "gltf")]
 pub use gltf::{GlbOptions, Instancing, write_glb};

@@ -155,6 +155,36 @@ impl Rect {
         let y = gap(self.min.y, other.max.y).max(gap(other.min.y, self.max.y));
         x * x + y * y
     }
+
+    /// Whether all of a closed segment is farther from the closed box than a distance. Exact; 104 bits.
+    #[must_use]
+    pub fn is_beyond(&self, distance: u64, [p, q]: [Point2; 2]) -> bool {
+        let limit = u128::from(distance).pow(2);
+        let near = |p: Point2| {
+            let gap = self.distance_squared(&Self { min: p, max: p });
+            u128::from(gap.unsigned_abs()) <= limit
+        };
+        if near(p) || near(q) || self.meets_segment([p, q]) {
+            return false;
+        }
+        // What is nearest may also be a corner of the box and a place between the ends.
+        let (dx, dy) = (
+            i64::from(q.x) - i64::from(p.x),
+            i64::from(q.y) - i64::from(p.y),
+        );
+        let length = (dx * dx + dy * dy).unsigned_abs();
+        self.corners().into_iter().all(|c| {
+            let (cx, cy) = (
+                i64::from(c.x) - i64::from(p.x),
+                i64::from(c.y) - i64::from(p.y),
+            );
+            let along = cx * dx + cy * dy;
+            let beside = along <= 0 || along.unsigned_abs() >= length;
+            let across = u128::from((dx * cy - dy * cx).unsigned_abs()).pow(2);
+            // A limit beyond all numbers is beyond all distances, too.
+            beside || limit.checked_mul(length.into()).is_some_and(|l| across > l)
+        })
+    }
 }
 
 #[cfg(test)]
@@ -210,5 +240,19 @@ mod tests {
         let far = Rect::around([p(7, 6), p(9, 9)]).expect("points");
         assert_eq!(r.distance_squared(&far), 25);
         assert_eq!(r.distance_squared(&r), 0);
+    }
+
+    /// The box around a slanted segment is near long before the segment itself is.
+    #[test]
+    fn what_is_beyond_a_distance_is_so_as_a_whole() {
+        let p = |x, y| Point2::new(x, y);
+        let r = Rect::around([p(-1, -1), p(0, 0)]).expect("points");
+        let slanted = [p(10, 0), p(0, 10)];
+        // 10 / sqrt(2) = 7.07...
+        assert!(r.is_beyond(7, slanted) && !r.is_beyond(8, slanted));
+        assert!(r.is_beyond(4, [p(3, 4), p(9, 9)]) && !r.is_beyond(5, [p(9, 9), p(3, 4)]));
+        assert!(!r.is_beyond(0, [p(-5, 4), p(4, -5)]) && r.is_beyond(0, [p(-5, 7), p(7, -5)]));
+        let m = LIMIT - 1;
+        assert!(!r.is_beyond(u64::MAX, [p(m, m), p(m, -m)]));
     }
 }

@@ -23,7 +23,7 @@ use crate::values::positive;
 pub(crate) struct GenArgs {
     #[command(subcommand)]
     kind: Kind,
-    /// The file to write: .glb or .obj; plans: .seg or .geojson
+    /// The file to write: .glb or .obj; of random-segments .seg or .geojson
     #[arg(long, short, global = true, value_name = "FILE")]
     output: Option<PathBuf>,
 }
@@ -50,13 +50,13 @@ enum Kind {
         #[arg(long, value_name = "S", default_value_t = 2.0, value_parser = positive)]
         source_area: f64,
     },
-    /// Random segments in a square of 100 m: a plan, written as .seg or .geojson
+    /// Random segments with their middles in a square of 100 m: a plan, written as .seg or .geojson
     RandomSegments {
         /// How many
         #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=2_000_000))]
         count: u32,
-        /// The longest one in metres (default: 130 / sqrt(N))
-        #[arg(long, value_name = "L", value_parser = positive)]
+        /// The longest that one may be, from 0.01 to 1000 metres (default: 130 / sqrt(N))
+        #[arg(long, value_name = "L", value_parser = segment_length)]
         length: Option<f64>,
     },
     /// Walls of 20 x 20 quads, one behind the other
@@ -112,7 +112,13 @@ enum Office {
 /// Makes the scene and writes it.
 pub(crate) fn run(args: &GenArgs, global: &Global) -> Result<(), Failure> {
     let path = args.output.as_deref().ok_or_else(|| {
-        Failure::Usage("the file to write is missing; give it with -o FILE.glb".to_owned())
+        let file = match args.kind {
+            Kind::RandomSegments { .. } => "FILE.seg",
+            _ => "FILE.glb",
+        };
+        Failure::Usage(format!(
+            "the file to write is missing; give it with -o {file}"
+        ))
     })?;
     if let Kind::RandomSegments { count, length } = args.kind {
         let mut params = SegmentParams::new(count, global.seed);
@@ -150,6 +156,14 @@ pub(crate) fn run(args: &GenArgs, global: &Global) -> Result<(), Failure> {
         scene.source_name
     );
     global.output().result(&parameters, &text)
+}
+
+/// A length that leaves most random segments one on their raster of 1/8192 m, and all near their square.
+fn segment_length(text: &str) -> Result<f64, String> {
+    positive(text)
+        .ok()
+        .filter(|length| (0.01..=1000.0).contains(length))
+        .ok_or_else(|| "expected a length from 0.01 to 1000 metres".to_owned())
 }
 
 /// Makes a plan and writes it.

@@ -1,6 +1,8 @@
 //! Runs the binary in a folder of its own.
 #![allow(dead_code, reason = "not every test file uses everything")]
 
+pub(crate) mod plans;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 

@@ -50,13 +50,18 @@ pub(super) fn read(text: &str) -> Result<PlanInput, Damage> {
         ..
     } = reader;
     if curves > 0 {
-        plan.notes
-            .push(format!("{curves} curved entities became chords"));
+        plan.notes.push(match curves {
+            1 => "1 curved entity became chords".to_owned(),
+            n => format!("{n} curved entities became chords"),
+        });
     }
     if left_out > 0 {
-        plan.notes.push(format!(
-            "{left_out} texts, hatches, hidden and other entities without lines are left out"
-        ));
+        plan.notes.push(match left_out {
+            1 => "1 text, hatch, hidden or other entity without lines is left out".to_owned(),
+            n => {
+                format!("{n} texts, hatches, hidden and other entities without lines are left out")
+            }
+        });
     }
     Ok(plan)
 }

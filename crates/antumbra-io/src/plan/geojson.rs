@@ -222,7 +222,10 @@ fn lines(geometry: Geometry, feature: usize, out: &mut Vec<Vec<[f64; 2]>>) -> Re
 
 pub(super) fn read(text: &str, options: &PlanReadOptions) -> Result<PlanInput, Damage> {
     let (features, crs, local) = document(text)?;
-    let mut plan = PlanInput::default();
+    let mut plan = PlanInput {
+        crs: crs.as_ref().map(Value::to_string),
+        ..PlanInput::default()
+    };
     plan.class("");
     let mut points_only = 0_usize;
     for (index, feature) in features.into_iter().enumerate() {
@@ -244,9 +247,10 @@ pub(super) fn read(text: &str, options: &PlanReadOptions) -> Result<PlanInput, D
         points_only += usize::from(plan.segments.len() == before);
     }
     if points_only > 0 {
-        plan.notes.push(format!(
-            "{points_only} features have no lines: they are left out"
-        ));
+        plan.notes.push(match points_only {
+            1 => "1 feature has no lines: it is left out".to_owned(),
+            n => format!("{n} features have no lines: they are left out"),
+        });
     }
     let ends = || plan.segments.iter().flat_map(|s| s.ends);
     if let Some(projection) = projection(crs.as_ref(), local, options.crs, ends)? {
@@ -353,6 +357,11 @@ pub struct CellInput {
 /// # Errors
 /// If the GeoJSON is damaged, or a feature is no cell.
 pub fn parse_cells(text: &str, around: Option<[f64; 2]>) -> Result<Vec<CellInput>, Damage> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    if text.trim().is_empty() {
+        let advice = "give GeoJSON with a polygon, a line of two points or a point a feature";
+        return Err(Damage::new(Place::Whole, "the file is empty", advice));
+    }
     let (features, ..) = document(text)?;
     let projection = around.map(Projection::around);
     let mut cells = Vec::with_capacity(features.len());
@@ -393,7 +402,9 @@ fn outline(geometry: Option<Geometry>, index: usize) -> Result<Vec<[f64; 2]>, Da
         ("LineString", Some(Nest::Line(line))) if line.len() == 2 => Ok(line),
         ("Point", Some(Nest::Position(p))) => Ok(vec![p]),
         ("Polygon", Some(Nest::Lines(rings))) => {
-            wrong(format!("the cell has {} holes", rings.len() - 1))
+            let holes = rings.len() - 1;
+            let word = if holes == 1 { "hole" } else { "holes" };
+            wrong(format!("the cell has {holes} {word}"))
         }
         (other, _) => {
             let name: String = other.chars().filter(|c| !c.is_control()).take(30).collect();

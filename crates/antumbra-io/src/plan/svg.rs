@@ -1,5 +1,5 @@
 //! SVG drawings: every line, polyline, polygon, rectangle, circle, ellipse and path, with the
-//! transformations of its groups, in user units. y stays as it is and runs down, so that cells are given in the
+//! transformations of its groups, in user units; but no rectangle of 100 % of the drawing, which is paper. y stays as it is and runs down, so that cells are given in the
 //! coordinates of the drawing.
 //!
 //! Coordinates stay doubles, which is why no renderer's tree (of single floats) is read.
@@ -56,6 +56,7 @@ pub(super) fn read(text: &str) -> Result<PlanInput, Damage> {
         plan: PlanInput::default(),
         curves: 0,
         skipped: 0,
+        backgrounds: 0,
         drawn: 0,
     };
     reader.plan.class("");
@@ -64,16 +65,27 @@ pub(super) fn read(text: &str) -> Result<PlanInput, Damage> {
         mut plan,
         curves,
         skipped,
+        backgrounds,
         ..
     } = reader;
     plan.y_down = true;
     if curves > 0 {
-        plan.notes
-            .push(format!("{curves} curved elements became chords"));
+        plan.notes.push(match curves {
+            1 => "1 curved element became chords".to_owned(),
+            n => format!("{n} curved elements became chords"),
+        });
     }
     if skipped > 0 {
-        plan.notes
-            .push(format!("{skipped} texts and images are left out"));
+        plan.notes.push(match skipped {
+            1 => "1 text or image is left out".to_owned(),
+            n => format!("{n} texts and images are left out"),
+        });
+    }
+    if backgrounds > 0 {
+        plan.notes.push(match backgrounds {
+            1 => "1 rectangle as large as the drawing is left out: a background".to_owned(),
+            n => format!("{n} rectangles as large as the drawing are left out: backgrounds"),
+        });
     }
     Ok(plan)
 }
@@ -104,6 +116,7 @@ struct Reader<'a, 'i> {
     plan: PlanInput,
     curves: u32,
     skipped: u32,
+    backgrounds: u32,
     drawn: usize,
 }
 
@@ -142,6 +155,10 @@ impl<'a, 'i> Reader<'a, 'i> {
             "use" => self.used(node, inner),
             "text" | "image" | "foreignObject" => {
                 self.skipped += 1;
+                Ok(())
+            }
+            "rect" if is_background(node) => {
+                self.backgrounds += 1;
                 Ok(())
             }
             name => match shape(node, name)? {
@@ -299,6 +316,12 @@ fn points(node: Node<'_, '_>) -> Result<Vec<Point>, Damage> {
         ));
     }
     Ok(numbers.chunks(2).map(|c| Point::new(c[0], c[1])).collect())
+}
+
+/// Whether a rectangle has the size of the drawing, whatever that is: paper, not a wall.
+fn is_background(node: Node<'_, '_>) -> bool {
+    let all = |key| node.attribute(key).is_some_and(|v| v.trim() == "100%");
+    all("width") && all("height")
 }
 
 /// A length in user units; `px` is one.

@@ -1,5 +1,5 @@
-//! Plain plan text: a segment a line, `x1 y1 x2 y2`, optionally followed by the name of its class;
-//! `#` begins a comment.
+//! Plain plan text: a segment a line, `x1 y1 x2 y2`, optionally followed by the name of its class, which is no
+//! number; `#` begins a comment.
 
 use antumbra_scene::plan::{PlanInput, PlanSegment};
 
@@ -38,6 +38,16 @@ pub(super) fn read(text: &str) -> Result<PlanInput, Damage> {
                 })?;
             word = words.next();
         }
+        if let Some(number) = word.filter(|w| is_number(w)) {
+            return Err(Damage::new(
+                place,
+                format!(
+                    "a fifth number, `{}`, follows the segment",
+                    shortened(number)
+                ),
+                "write one segment `x1 y1 x2 y2` a line; the name of a class is no number",
+            ));
+        }
         let class = word.map_or(unnamed, |name| plan.class(name));
         if let Some(more) = words.next() {
             return Err(Damage::new(
@@ -55,6 +65,11 @@ pub(super) fn read(text: &str) -> Result<PlanInput, Damage> {
         });
     }
     Ok(plan)
+}
+
+/// Whether a word reads as a number: then it names no class. Without a digit (`inf`, `nan`) it is a name.
+pub(super) fn is_number(word: &str) -> bool {
+    word.parse::<f64>().is_ok() && word.contains(|c: char| c.is_ascii_digit())
 }
 
 /// At most twenty characters of a word, for messages.

@@ -2,12 +2,17 @@
 
 use std::io;
 
+use crate::error::said;
+
 /// Why a `.pvs` or `.proof` file could not be read or written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PvsError {
     /// A path cannot be read or written.
-    #[error("{file}: cannot be {action} ({cause}); check the path, its permissions and free space")]
+    #[error(
+        "{file}: cannot be {action} ({}); check the path, its permissions and free space",
+        said(cause)
+    )]
     Path {
         /// The path.
         file: String,

@@ -103,6 +103,26 @@ impl Plan {
     }
 }
 
+impl Plan {
+    /// How many segments of the input it was built from have no length on its grid, but would have one on the finest
+    /// that fits the plan alone: what far cells cost.
+    #[must_use]
+    pub fn lost_to_cells(&self, input: &PlanInput) -> usize {
+        let Ok(alone) = grid_for(input, &PlanOptions::default()) else {
+            return 0;
+        };
+        let has_length = |segment: SegmentId| {
+            let ends = input.segments.get(segment.0 as usize).map(|s| s.ends);
+            ends.is_some_and(|ends| {
+                let [a, b] = ends.map(|[x, y]| alone.snap([x, y, 0.0]).ok());
+                a != b
+            })
+        };
+        let points = self.points().iter();
+        points.filter(|(segment, _)| has_length(*segment)).count()
+    }
+}
+
 /// A snapped segment.
 struct Snapped {
     ends: [Point2; 2],

@@ -40,6 +40,8 @@ pub struct PlanInput {
     pub y_down: bool,
     /// The longitude and latitude around which it was projected to metres, if it was.
     pub projected_around: Option<[f64; 2]>,
+    /// The `crs` member of GeoJSON, as JSON, if the file has one.
+    pub crs: Option<String>,
     /// Notes of the reader for people: what was projected or left out.
     pub notes: Vec<String>,
 }

@@ -1,4 +1,4 @@
-//! Random segments in a square: the plans of [Bittner02, 6.7].
+//! Random segments with middles in a square: the plans of [Bittner02, 6.7].
 
 use super::SplitMix64;
 use crate::plan::{PlanInput, PlanSegment};
@@ -30,8 +30,8 @@ impl SegmentParams {
 /// Side of the square in metres.
 const SIDE: f64 = 100.0;
 
-/// Segments with middles, directions and lengths that are evenly distributed, in a square of 100 m; coordinates
-/// are multiples of 1/8192 m.
+/// Segments with directions and lengths that are evenly distributed and middles that are so in a square of 100 m,
+/// which ends may leave by half a length; coordinates are multiples of 1/8192 m. One shorter than that may be a point.
 ///
 /// ```
 /// use antumbra_scene::synth::{SegmentParams, random_segments};

@@ -43,7 +43,9 @@ pub struct ViewOptions {
     pub test: BoxTest,
     /// One tree for all edges of a cell, instead of one for each [Bittner02, 6.5.2].
     pub one_tree: bool,
-    /// Leave out what is farther from the box around the cell than this, in grid steps: what is nearer is exact.
+    /// Leave out pieces that are as a whole farther from the box around the cell than this, in grid steps. What is seen
+    /// within it is exact; a piece that goes on beyond it may be seen there through another one that was left
+    /// out, and then the view is conservative.
     pub reach: Option<u64>,
     /// Test the opened kD leaves again against the finished trees [Bittner02, 6.6].
     pub second_pass: bool,
@@ -85,7 +87,8 @@ pub struct PlanView {
     pub funnels: Vec<Funnel>,
     /// The certificate, if it was asked for.
     pub proof: Option<PlanProof>,
-    /// Exact, or conservative if an occluder meets the open interior of the cell.
+    /// Exact, or conservative if an occluder meets the open interior of the cell or a fragment belongs to a piece that
+    /// goes on beyond the reach.
     pub accuracy: Accuracy,
     /// What was done.
     pub work: PlanWork,
@@ -111,7 +114,7 @@ pub fn look(plan: &Plan, cell: &CellShape, options: &ViewOptions) -> PlanView {
     match cell {
         CellShape::Point(eye) => {
             let mut swept = sweep(plan, PointLines::new(*eye), how);
-            let funnels = point_funnels(plan, &mut swept);
+            let funnels = point_funnels(plan, &mut swept, how.reach);
             let grazing = swept.source.grazing.clone();
             let middle = |f: &Funnel| PlanLine::avoiding(&f.lines, &grazing);
             finish(plan, cell, Vec::new(), (funnels, middle), swept, options)
@@ -119,7 +122,7 @@ pub fn look(plan: &Plan, cell: &CellShape, options: &ViewOptions) -> PlanView {
         CellShape::Segment(_) | CellShape::Region(_) => {
             let source = RegionLines::new(plan, cell.clone(), options.one_tree);
             let mut swept = sweep(plan, source, how);
-            let funnels = region_funnels(plan, &mut swept);
+            let funnels = region_funnels(plan, &mut swept, how.reach);
             let windows = swept.source.windows().to_vec();
             let grazing = swept.source.grazing.clone();
             let middle = |f: &Funnel| PlanLine::avoiding(&f.lines, &grazing[f.window as usize]);
@@ -132,7 +135,7 @@ pub fn look(plan: &Plan, cell: &CellShape, options: &ViewOptions) -> PlanView {
     }
 }
 
-fn region_funnels(plan: &Plan, swept: &mut Swept<RegionLines>) -> Vec<Funnel> {
+fn region_funnels(plan: &Plan, swept: &mut Swept<RegionLines>, reach: Option<u64>) -> Vec<Funnel> {
     let mut out = Vec::new();
     let source = &mut swept.source;
     for window in 0..source.windows().len() {
@@ -140,16 +143,16 @@ fn region_funnels(plan: &Plan, swept: &mut Swept<RegionLines>) -> Vec<Funnel> {
         let roots = source.roots(window, tree);
         blocked_funnels(plan, source, tree, (window, roots), &mut out);
     }
-    glass_funnels(plan, swept, &mut out);
+    glass_funnels(plan, swept, reach, &mut out);
     out
 }
 
-fn point_funnels(plan: &Plan, swept: &mut Swept<PointLines>) -> Vec<Funnel> {
+fn point_funnels(plan: &Plan, swept: &mut Swept<PointLines>, reach: Option<u64>) -> Vec<Funnel> {
     let mut out = Vec::new();
     let source = &mut swept.source;
     let roots = source.roots();
     blocked_funnels(plan, source, &swept.trees[0], (0, roots), &mut out);
-    glass_funnels(plan, swept, &mut out);
+    glass_funnels(plan, swept, reach, &mut out);
     out
 }
 
@@ -178,12 +181,19 @@ fn blocked_funnels<S: Source>(
 }
 
 /// The funnels of pieces that block nothing, in the leaves that were opened.
-fn glass_funnels<S: Source>(plan: &Plan, swept: &mut Swept<S>, out: &mut Vec<Funnel>) {
+fn glass_funnels<S: Source>(
+    plan: &Plan,
+    swept: &mut Swept<S>,
+    reach: Option<u64>,
+    out: &mut Vec<Funnel>,
+) {
+    let from = swept.source.bounds();
+    let near = |id: PieceId| sweep::comes_near(reach, plan.pieces()[id.0 as usize], &from);
     let opened = swept.opened.iter().map(|&i| &plan.kd().nodes()[i as usize]);
     let mut glass: Vec<PieceId> = opened
         .flat_map(|node| plan.kd().items(node))
         .copied()
-        .filter(|&id| !plan.occludes(id))
+        .filter(|&id| !plan.occludes(id) && near(id))
         .collect();
     glass.sort_unstable();
     glass.dedup();
@@ -236,6 +246,10 @@ fn finish<S: Source>(
     let inside = touching
         .iter()
         .any(|&id| plan.occludes(id) && cell.enters(plan.pieces()[id.0 as usize]));
+    let from = cell.bounds();
+    let beyond = fragments
+        .iter()
+        .any(|f| sweep::goes_beyond(options.reach, plan.pieces()[f.piece.0 as usize], &from));
     PlanView {
         cell: cell.clone(),
         windows,
@@ -243,7 +257,7 @@ fn finish<S: Source>(
         fragments,
         funnels,
         proof: None,
-        accuracy: if inside {
+        accuracy: if inside || beyond {
             Accuracy::Conservative
         } else {
             Accuracy::Exact

@@ -121,9 +121,21 @@ pub type Growth = Vec<(u64, u64)>;
 pub(super) struct How {
     pub order: SweepOrder,
     pub test: BoxTest,
-    /// Nothing farther from the source than this, in grid steps, is asked for.
+    /// No piece that is as a whole farther from the source's box than this, in grid steps, is asked for.
     pub reach: Option<u64>,
     pub growth: bool,
+}
+
+/// Whether a piece comes within the reach of a cell in a box. Exact. Its points that are near lie in leaves that are
+/// near, so that the kD-tree has no say in it.
+pub(super) fn comes_near(reach: Option<u64>, ends: [Point2; 2], from: &Rect) -> bool {
+    reach.is_none_or(|reach| !from.is_beyond(reach, ends))
+}
+
+/// Whether a piece goes on beyond the reach of a cell in a box. Exact: distance grows towards one of its ends.
+pub(super) fn goes_beyond(reach: Option<u64>, ends: [Point2; 2], from: &Rect) -> bool {
+    let beyond = |reach| ends.iter().any(|&p| from.is_beyond(reach, [p, p]));
+    reach.is_some_and(beyond)
 }
 
 /// What a sweep leaves behind.
@@ -304,11 +316,9 @@ impl<S: Source> Sweeper<'_, S> {
         if node.children().is_none() && node.count() == 0 {
             return false;
         }
-        if self
-            .how
-            .reach
-            .is_some_and(|r| is_beyond(r, &node.bounds, &out.source.bounds()))
-        {
+        let from = out.source.bounds();
+        let beyond = |reach| from.distance_squared(&node.bounds).unsigned_abs() > squared(reach);
+        if self.how.reach.is_some_and(beyond) {
             return false;
         }
         if self.how.test == BoxTest::Never {
@@ -331,11 +341,8 @@ impl<S: Source> Sweeper<'_, S> {
         let plan = self.plan;
         for &id in plan.kd().items(&plan.kd().nodes()[index as usize]) {
             let ends = plan.pieces()[id.0 as usize];
-            let beyond = self.how.reach.is_some_and(|reach| {
-                let around = Rect::around(ends);
-                around.is_some_and(|r| is_beyond(reach, &r, &self.out.source.bounds()))
-            });
-            if !beyond && plan.occludes(id) && self.seen.insert(id) {
+            let near = comes_near(self.how.reach, ends, &self.out.source.bounds());
+            if near && plan.occludes(id) && self.seen.insert(id) {
                 pieces.push(id);
             }
         }
@@ -372,7 +379,6 @@ impl<S: Source> Sweeper<'_, S> {
     }
 }
 
-/// Whether a box is farther from another one than a distance.
-fn is_beyond(reach: u64, rect: &Rect, from: &Rect) -> bool {
-    rect.distance_squared(from).unsigned_abs() > reach.saturating_mul(reach)
+fn squared(reach: u64) -> u64 {
+    reach.saturating_mul(reach)
 }

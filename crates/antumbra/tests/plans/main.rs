@@ -3,5 +3,6 @@
 mod ladder;
 mod mutual;
 mod rays;
+mod reach;
 mod real;
 mod small;

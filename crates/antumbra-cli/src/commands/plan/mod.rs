@@ -8,8 +8,8 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use antumbra::plan::{
-    BoxTest, Isovist, Plan, PlanCell, PlanOptions, SeeOptions, Seen, SweepOrder, isovist, mutual,
-    mutual_matrix, see_all,
+    BoxTest, Isovist, Plan, PlanCell, PlanInput, PlanOptions, SeeOptions, Seen, SweepOrder,
+    isovist, mutual, mutual_matrix, see_all,
 };
 use antumbra_io::plan::{Crs, PlanReadOptions, read_plan};
 use antumbra_scene::OccluderPolicy;
@@ -20,7 +20,7 @@ use serde_json::{Map, Value, json};
 use crate::cli::Global;
 use crate::failure::Failure;
 use crate::load::read_failure;
-use crate::output::{check_writable, seconds, write_file};
+use crate::output::{check_writable, counted, seconds, write_file};
 use crate::values::positive;
 use cells::{NamedCell, OutlineArg};
 
@@ -32,27 +32,30 @@ pub(crate) struct PlanArgs {
     plan: PathBuf,
     /// The view cell: corners of a polygon, two ends of a segment, or one point, in the coordinates of the plan
     #[arg(long, value_name = "\"X,Y X,Y ...\"", allow_hyphen_values = true)]
-    #[arg(required_unless_present = "cells", conflicts_with = "cells")]
+    #[arg(conflicts_with = "cells")]
     cell: Option<OutlineArg>,
-    /// View cells from GeoJSON: a polygon, a line of two points or a point a feature
+    /// View cells from GeoJSON, also gzip'd: a polygon, a line of two points or a point a feature
     #[arg(long, value_name = "FILE")]
     cells: Option<PathBuf>,
-    /// Another cell: does the first one see it?
-    #[arg(
-        long,
-        value_name = "\"X,Y X,Y ...\"",
-        allow_hyphen_values = true,
-        requires = "cell"
-    )]
+    /// Another cell: does the cell, or which of the cells, see it?
+    #[arg(long, value_name = "\"X,Y X,Y ...\"", allow_hyphen_values = true)]
+    #[arg(conflicts_with = "matrix")]
     to: Option<OutlineArg>,
-    /// Which cells see which, instead of what they see
-    #[arg(long, requires = "cells")]
+    /// Which of the cells of --cells see which, instead of what they see
+    #[arg(long)]
     matrix: bool,
-    /// Nothing farther from the cell than this, in units of the plan
+    /// Leave out segments that are as a whole farther from the cell than this, in units of the plan
+    ///
+    /// A segment that comes within the distance is reported with all that is seen of it, also beyond. The distance is
+    /// that to the box around the cell (around each convex part of one that is not convex), rounded up to a
+    /// grid step; where corners of other segments lie on a segment, each piece between them counts by itself. What is
+    /// seen within the distance is exact. Segments left out hide nothing: beyond the distance, more of a
+    /// reported segment may be called visible than is, and then the accuracy is "conservative".
     #[arg(long, value_name = "DISTANCE", value_parser = positive)]
+    #[arg(conflicts_with_all = ["matrix", "to"])]
     reach: Option<f64>,
     /// Add a line for each fragment that sees it, as exact coefficients in grid steps
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["matrix", "to"])]
     witnesses: bool,
     /// Only these classes or layers block the view
     #[arg(
@@ -81,25 +84,25 @@ pub(crate) struct PlanArgs {
     #[arg(long)]
     one_tree: bool,
     /// Test the opened kD leaves again when all occluders are known, and list the visible kD nodes
-    #[arg(long)]
-    second_pass: bool,
-    /// The visible area of each cell: polygon, area, perimeter and depth; drawn with --svg
     #[arg(long, conflicts_with_all = ["matrix", "to"])]
+    second_pass: bool,
+    /// The visible area of each cell, however far it goes: polygon, area, perimeter and depth; drawn with --svg
+    #[arg(long, conflicts_with_all = ["matrix", "reach", "to"])]
     isovist: bool,
     /// Check every verdict by code that shares nothing with the engine
     #[arg(long, conflicts_with_all = ["matrix", "reach", "to"])]
     check: bool,
-    /// Draw the plan, the cell, the visible fragments, extremal lines and culled kD nodes as SVG
-    #[arg(long, value_name = "FILE", conflicts_with = "matrix")]
+    /// Draw the plan, the cells, the visible fragments, extremal lines and the kD nodes culled for all cells as SVG
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["matrix", "to"])]
     svg: Option<PathBuf>,
-    /// Draw the blocked sets of lines, as polygons of line space, as SVG
-    #[arg(long, value_name = "FILE", conflicts_with = "matrix")]
+    /// Draw the blocked sets of lines of a single cell, as polygons of line space, as SVG
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["matrix", "to"])]
     line_space: Option<PathBuf>,
-    /// Write the visible fragments as GeoJSON
-    #[arg(long, value_name = "FILE", conflicts_with = "matrix")]
+    /// Write the visible fragments as GeoJSON, in the coordinates and with the `crs` of the plan
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["matrix", "to"])]
     geojson: Option<PathBuf>,
     /// Write the funnels as JSON: which fragment is seen from which part of the cell
-    #[arg(short, long, value_name = "FILE", conflicts_with = "matrix")]
+    #[arg(short, long, value_name = "FILE", conflicts_with_all = ["matrix", "to"])]
     output: Option<PathBuf>,
 }
 
@@ -197,10 +200,42 @@ impl PlanArgs {
             self.output.as_ref(),
         ]
     }
+
+    /// What is wrong with the options together.
+    fn misuse(&self) -> Option<&'static str> {
+        if self.matrix && self.cells.is_none() {
+            return Some(
+                "--matrix compares the cells of a file with each other; give them with --cells FILE",
+            );
+        }
+        (self.cell.is_none() && self.cells.is_none()).then_some(
+            "the view cell is missing; give one with --cell \"X,Y X,Y ...\" or a file of them with --cells FILE",
+        )
+    }
+
+    /// The view cells, in lengths.
+    fn outlines(&self, input: &PlanInput) -> Result<Vec<NamedCell>, Failure> {
+        let around = input.projected_around;
+        let outlines = match (&self.cell, &self.cells) {
+            (Some(outline), _) => vec![NamedCell::given(outline, "--cell", around)],
+            (None, Some(path)) => cells::read(path, around)?,
+            (None, None) => Vec::new(),
+        };
+        let n = outlines.len();
+        if self.line_space.is_some() && n > 1 {
+            return Err(Failure::Usage(format!(
+                "--line-space measures lines from the middle of one cell, but there are {n}; give the one to draw with --cell"
+            )));
+        }
+        Ok(outlines)
+    }
 }
 
 /// Reads, looks, writes.
 pub(crate) fn run(args: &PlanArgs, global: &Global) -> Result<(), Failure> {
+    if let Some(misuse) = args.misuse() {
+        return Err(Failure::Usage(misuse.to_owned()));
+    }
     let mut inputs = vec![args.plan.as_path()];
     inputs.extend(args.cells.as_deref());
     for path in args.outputs().into_iter().flatten() {
@@ -208,27 +243,15 @@ pub(crate) fn run(args: &PlanArgs, global: &Global) -> Result<(), Failure> {
     }
     let start = Instant::now();
     let input = read_plan(&args.plan, &args.reading()).map_err(|e| read_failure(&e))?;
-    let outlines = match (&args.cell, &args.cells) {
-        (Some(outline), _) => vec![NamedCell::given(outline, input.projected_around)],
-        (None, Some(path)) => cells::read(path, input.projected_around)?,
-        (None, None) => Vec::new(),
-    };
+    let outlines = args.outlines(&input)?;
     let to = args.to.as_ref();
-    let to = to.map(|outline| NamedCell::given(outline, input.projected_around));
+    let to = to.map(|outline| NamedCell::given(outline, "--to", input.projected_around));
     let load_time = start.elapsed();
     let start = Instant::now();
-    let around = cells::around(outlines.iter().chain(&to));
-    let options = PlanOptions {
-        grid: global.grid,
-        around,
-        policy: args.policy(),
-        ..PlanOptions::default()
-    };
-    let plan = Plan::build(&input, &options)
-        .map_err(|e| Failure::Content(format!("{}: {e}", args.plan.display())))?;
+    let plan = build(args, global, &input, || outlines.iter().chain(&to))?;
     let made = outlines
         .iter()
-        .map(|c| c.make(&plan, args.cells.as_deref()))
+        .map(|c| c.make(&plan))
         .collect::<Result<Vec<PlanCell>, Failure>>()?;
     let build_time = start.elapsed();
     for note in &input.notes {
@@ -237,11 +260,13 @@ pub(crate) fn run(args: &PlanArgs, global: &Global) -> Result<(), Failure> {
     note_repairs(&plan, global);
     let start = Instant::now();
     let mut result = Map::new();
+    let mut failed = None;
     let text = if args.matrix {
         matrix(&plan, &outlines, &made, &mut result)
     } else if let Some(to) = &to {
-        let to = to.make(&plan, None)?;
-        report::sight(mutual(&plan, &made[0], &to), &mut result)
+        let to = to.make(&plan)?;
+        let sights: Vec<_> = made.par_iter().map(|c| mutual(&plan, c, &to)).collect();
+        report::sights(args.cells.is_some(), &outlines, &sights, &mut result)
     } else {
         let seen = see_all(&plan, &made, &args.options(plan.grid().step()));
         let areas: Vec<Isovist> = if args.isovist {
@@ -253,10 +278,14 @@ pub(crate) fn run(args: &PlanArgs, global: &Global) -> Result<(), Failure> {
         let start = Instant::now();
         write(args, &plan, &input, &outlines, (&seen, &areas))?;
         result.insert("write_seconds".to_owned(), json!(seconds(start.elapsed())));
+        let mut text = report::seen(args, &plan, &outlines, (&seen, &areas), &mut result);
+        text += &report::asked(args, &seen, &areas);
         if args.check {
-            report::check(&plan, &seen, &mut result)?;
+            let checked = report::check(&plan, &seen, &mut result);
+            text += &checked.text;
+            failed = checked.failure;
         }
-        report::seen(args, &plan, &outlines, (&seen, &areas), &mut result)
+        text
     };
     let mut add = |key: &str, value: Value| {
         result.entry(key).or_insert(value);
@@ -271,7 +300,30 @@ pub(crate) fn run(args: &PlanArgs, global: &Global) -> Result<(), Failure> {
     add("build_seconds", json!(seconds(build_time)));
     let took = result["seconds"].as_f64().unwrap_or_default() * 1e3;
     let text = format!("{text}, in {took:.1} ms");
-    global.output().result(&Value::Object(result), &text)
+    global.output().result(&Value::Object(result), &text)?;
+    failed.map_or(Ok(()), Err)
+}
+
+/// Puts the plan on a grid that holds the cells, too.
+fn build<'c, I: Iterator<Item = &'c NamedCell>>(
+    args: &PlanArgs,
+    global: &Global,
+    input: &PlanInput,
+    outlines: impl Fn() -> I,
+) -> Result<Plan, Failure> {
+    let options = PlanOptions {
+        grid: global.grid,
+        around: cells::around(outlines()),
+        policy: args.policy(),
+        ..PlanOptions::default()
+    };
+    let plan = Plan::build(input, &options)
+        .map_err(|e| Failure::Content(format!("{}: {e}", args.plan.display())))?;
+    // Who chooses the grid chooses what is lost on it.
+    if global.grid.is_none() {
+        cells::refuse_far(input, &plan, outlines())?;
+    }
+    Ok(plan)
 }
 
 fn matrix(
@@ -288,16 +340,15 @@ fn matrix(
     result.insert("matrix".to_owned(), json!(rows));
     result.insert("pairs".to_owned(), json!(pairs));
     let n = cells.len();
-    format!(
-        "{pairs} of {} pairs of cells see each other",
-        n * n.saturating_sub(1) / 2
-    )
+    let all = counted(n * n.saturating_sub(1) / 2, "pair", "pairs");
+    let see = if pairs == 1 { "sees" } else { "see" };
+    format!("{pairs} of {all} of cells {see} each other")
 }
 
 fn write(
     args: &PlanArgs,
     plan: &Plan,
-    input: &antumbra::plan::PlanInput,
+    input: &PlanInput,
     outlines: &[NamedCell],
     (seen, areas): (&[Seen], &[Isovist]),
 ) -> Result<(), Failure> {
@@ -325,20 +376,30 @@ fn note_repairs(plan: &Plan, global: &Global) {
     let report = plan.report();
     let points = report.points.len();
     if points > 0 {
-        global.output().note(&format!(
-            "note: {points} segments have no length on the grid: they block nothing and are seen only by cells they lie in"
-        ));
+        let text = match points {
+            1 => "1 segment has no length on the grid: it blocks nothing and is seen only by cells it lies in".to_owned(),
+            n => format!(
+                "{n} segments have no length on the grid: they block nothing and are seen only by cells they lie in"
+            ),
+        };
+        global.output().note(&format!("note: {text}"));
     }
     if report.shared > 0 {
+        let belong = if report.shared == 1 {
+            "belongs"
+        } else {
+            "belong"
+        };
         global.output().note(&format!(
-            "note: {} pieces belong to more than one segment: all of them are reported",
-            report.shared
+            "note: {} {belong} to more than one segment: all of these are reported",
+            counted(report.shared, "piece", "pieces")
         ));
     }
     if report.sealed > 0 {
         global.output().note(&format!(
-            "note: {} corners within a grid step of a foreign segment were put into it",
-            report.sealed
+            "note: {} within a grid step of a foreign segment {} put into it",
+            counted(report.sealed, "corner", "corners"),
+            if report.sealed == 1 { "was" } else { "were" }
         ));
     }
 }

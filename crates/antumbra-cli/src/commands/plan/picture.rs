@@ -80,18 +80,16 @@ pub(super) fn plan(plan: &Plan, seen: &[Seen], areas: &[Isovist], y_down: bool) 
         ..Paper::new(low, high)
     };
     let mut svg = paper.open("What a cell sees of a plan");
-    let (mut culled, mut lines, mut red, mut blue) =
-        (String::new(), String::new(), String::new(), String::new());
-    let mut again = String::new();
+    let (mut lines, mut red, mut blue) = (String::new(), String::new(), String::new());
+    let boxes = |nodes: Vec<u32>| -> String {
+        let bounds = nodes
+            .into_iter()
+            .map(|i| plan.kd().nodes()[i as usize].bounds);
+        let outlines = bounds.map(|b| outline(&paper, &b.corners().map(|c| c.to_f64())));
+        outlines.collect()
+    };
+    let [culled, again] = hidden_from_all(plan, cells()).map(boxes);
     for view in cells() {
-        for &node in &view.culled {
-            let b = plan.kd().nodes()[node as usize].bounds;
-            culled += &outline(&paper, &b.corners().map(|c| c.to_f64()));
-        }
-        for &node in &view.reclassified {
-            let b = plan.kd().nodes()[node as usize].bounds;
-            again += &outline(&paper, &b.corners().map(|c| c.to_f64()));
-        }
         extremal(&paper, plan, view, &mut lines);
         let point = |piece: usize, t: f64| {
             let [p, q] = plan.pieces()[piece].map(|p| p.to_f64());
@@ -156,6 +154,44 @@ pub(super) fn plan(plan: &Plan, seen: &[Seen], areas: &[Isovist], y_down: bool) 
     svg
 }
 
+/// The nodes that were culled for every view, the highest ones; and the leaves that a second pass found hidden where
+/// culling did not, and that no view sees.
+fn hidden_from_all<'v>(plan: &Plan, views: impl Iterator<Item = &'v PlanView>) -> [Vec<u32>; 2] {
+    let nodes = plan.kd().nodes();
+    // For how many views a node was culled, and for how many it is hidden at least since the second pass.
+    let mut counts = vec![[0_u32; 2]; nodes.len()];
+    let mut all = 0;
+    for view in views {
+        all += 1;
+        for &i in &view.culled {
+            counts[i as usize][0] += 1;
+        }
+        for &i in &view.reclassified {
+            counts[i as usize][1] += 1;
+        }
+    }
+    let (mut culled, mut again) = (Vec::new(), Vec::new());
+    let mut stack = if nodes.is_empty() {
+        Vec::new()
+    } else {
+        vec![(0_u32, 0)]
+    };
+    while let Some((i, above)) = stack.pop() {
+        let [here, second] = counts[i as usize];
+        let count = above + here;
+        if count == all {
+            culled.push(i);
+        } else if let Some(children) = nodes[i as usize].children() {
+            stack.extend(children.map(|child| (child, count)));
+        } else if count + second == all {
+            again.push(i);
+        }
+    }
+    culled.sort_unstable();
+    again.sort_unstable();
+    [culled, again]
+}
+
 /// The extremal lines of the funnels, from the cell to what they see.
 fn extremal(paper: &Paper, plan: &Plan, view: &PlanView, out: &mut String) {
     for f in &view.funnels {
@@ -175,17 +211,20 @@ fn extremal(paper: &Paper, plan: &Plan, view: &PlanView, out: &mut String) {
     }
 }
 
-/// The funnels as polygons of line space: each extremal line is the point (a, b, c) on a sphere around the
-/// middle of the cell, drawn by its direction and its distance from the middle.
+/// The funnels of one cell as polygons of line space: each extremal line is the point (a, b, c) on a sphere around
+/// the middle of the cell, drawn by its direction and its distance from the middle.
 pub(super) fn line_space(seen: &[Seen]) -> String {
     let paper = Paper::new([-180.0, -60.0], [180.0, 60.0]);
     let mut svg =
         paper.open("Funnels in line space: direction against distance from the middle of the cell");
-    for view in seen.iter().flat_map(|s| &s.parts) {
-        let bounds = view.cell.bounds();
-        let (low, high) = (bounds.min.to_f64(), bounds.max.to_f64());
-        let middle = [0, 1].map(|k| (low[k] + high[k]) / 2.0);
-        let radius = ((high[0] - low[0]).hypot(high[1] - low[1]) / 2.0).max(1.0);
+    let views = || seen.iter().flat_map(|s| &s.parts);
+    // Of a cell in parts, all lines are measured from the middle of the whole.
+    let corners = || views().flat_map(|v| v.cell.corners()).map(|c| c.to_f64());
+    let low = [0, 1].map(|k| corners().fold(f64::INFINITY, |m, p| m.min(p[k])));
+    let high = [0, 1].map(|k| corners().fold(f64::NEG_INFINITY, |m, p| m.max(p[k])));
+    let middle = [0, 1].map(|k| (low[k] + high[k]) / 2.0);
+    let radius = ((high[0] - low[0]).hypot(high[1] - low[1]) / 2.0).max(1.0);
+    for view in views() {
         for (i, f) in view.funnels.iter().enumerate() {
             let mut points: Vec<[f64; 2]> = Vec::new();
             for line in &f.lines {

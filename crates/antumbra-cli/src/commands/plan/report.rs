@@ -11,7 +11,7 @@ use serde_json::{Map, Value, json};
 use super::PlanArgs;
 use super::cells::NamedCell;
 use crate::failure::Failure;
-use crate::output::seconds;
+use crate::output::{counted, seconds};
 
 fn accuracy(a: Accuracy) -> &'static str {
     match a {
@@ -107,11 +107,12 @@ pub(super) fn seen(
         result.extend(cell(args, plan, one, areas.first()));
         let fragments: usize = one.segments.iter().map(|s| s.fragments.len()).sum();
         return format!(
-            "{} of {} segments visible in {fragments} fragments ({}), {} tree nodes",
+            "{} of {} visible in {} ({}), {}",
             one.segments.len(),
-            plan.segment_count(),
+            counted(plan.segment_count(), "segment", "segments"),
+            counted(fragments, "fragment", "fragments"),
             accuracy(one.accuracy),
-            one.work.tree_nodes
+            counted(one.work.tree_nodes as usize, "tree node", "tree nodes")
         );
     }
     let cells: Vec<Value> = outlines
@@ -131,10 +132,35 @@ pub(super) fn seen(
     result.insert("visible_mean".to_owned(), json!(mean));
     result.insert("tree_nodes".to_owned(), json!(nodes));
     format!(
-        "{} cells see {mean:.1} of {} segments on average",
-        seen.len(),
-        plan.segment_count()
+        "{} {mean:.1} of {} on average",
+        counted(seen.len(), "cell sees", "cells see"),
+        counted(plan.segment_count(), "segment", "segments")
     )
+}
+
+/// What else was asked for, in words.
+pub(super) fn asked(args: &PlanArgs, seen: &[Seen], areas: &[Isovist]) -> String {
+    let parts = || seen.iter().flat_map(|s| &s.parts);
+    let mut text = String::new();
+    match areas {
+        [] => {}
+        [one] => {
+            let (area, perimeter) = (one.area, one.perimeter);
+            text += &format!("; isovist of area {area:.3} and perimeter {perimeter:.3}");
+        }
+        many => text += &format!("; {} isovists", many.len()),
+    }
+    if args.witnesses {
+        let lines = parts().map(|v| v.fragments.len()).sum();
+        text += &format!("; {}", counted(lines, "witness", "witnesses"));
+    }
+    if args.second_pass {
+        let hidden = parts().map(|v| v.reclassified.len()).sum();
+        let leaves = counted(hidden, "opened kD leaf", "opened kD leaves");
+        let found = if hidden == 1 { "is" } else { "are" };
+        text += &format!("; {leaves} {found} hidden after all");
+    }
+    text
 }
 
 /// Numbers stay numbers.
@@ -142,50 +168,97 @@ fn id_value(id: &str) -> Value {
     id.parse::<i64>().map_or_else(|_| json!(id), |n| json!(n))
 }
 
-/// Checks all certificates; one that fails is a bug worth an exit code.
-pub(super) fn check(
-    plan: &Plan,
-    seen: &[Seen],
-    result: &mut Map<String, Value>,
-) -> Result<(), Failure> {
+/// What checking found.
+pub(super) struct Checked {
+    /// For people.
+    pub text: String,
+    /// A verdict that does not hold is a bug worth an exit code.
+    pub failure: Option<Failure>,
+}
+
+/// Checks all certificates.
+pub(super) fn check(plan: &Plan, seen: &[Seen], result: &mut Map<String, Value>) -> Checked {
     let start = Instant::now();
     let proofs: Vec<_> = seen
         .iter()
         .flat_map(|s| &s.parts)
         .filter_map(|v| v.proof.as_ref())
         .collect();
-    let (mut visible, mut hidden) = (0, 0);
+    let (mut visible, mut hidden, mut failures) = (0, 0, Vec::new());
     for proof in &proofs {
         let report = antumbra::plan::check(plan, proof);
-        if let Some(why) = report.failed.first() {
-            return Err(Failure::Content(format!(
-                "the certificate does not hold: {why}; please report this with the plan and the cell"
-            )));
-        }
         visible += report.visible_checked;
         hidden += report.hidden_checked;
+        failures.extend(report.failed);
     }
     let parts: usize = seen.iter().map(|s| s.parts.len()).sum();
+    let points = parts - proofs.len();
     result.insert(
         "check".to_owned(),
-        json!({"visible_checked": visible, "hidden_checked": hidden, "unchecked_points": parts - proofs.len(),
-            "seconds": seconds(start.elapsed())}),
+        json!({"visible_checked": visible, "hidden_checked": hidden, "unchecked_points": points,
+            "failed": failures.len(), "failures": failures, "seconds": seconds(start.elapsed())}),
     );
-    Ok(())
+    let failure = failures.first().map(|why| {
+        let failed = counted(failures.len(), "verdict does", "verdicts do");
+        Failure::Content(format!(
+            "{failed} not hold ({why}); please report this with the plan and the cell"
+        ))
+    });
+    let verdicts = visible + hidden;
+    let mut text = String::new();
+    if verdicts > 0 || !failures.is_empty() {
+        text += &match (failures.len(), verdicts) {
+            (0, 1) => "; checked: the only verdict holds".to_owned(),
+            (0, n) => format!("; checked: all {n} verdicts hold"),
+            (failed, n) => format!("; checked: {n} verdicts hold, {failed} failed"),
+        };
+    }
+    if points > 0 {
+        let cells = counted(points, "point has", "points have");
+        text += &format!("; {cells} no certificate to check");
+    }
+    Checked { text, failure }
 }
 
-pub(super) fn sight(sight: Option<Sight>, result: &mut Map<String, Value>) -> String {
-    let (verdict, text) = match &sight {
-        None => ("hidden", "the cells do not see each other"),
-        Some(Sight::Touching) => ("visible", "the cells touch"),
-        Some(Sight::Line(line)) => {
-            let line = line.big().map(|c| c.to_string());
-            result.insert("line".to_owned(), json!(line));
-            ("visible", "the cells see each other")
-        }
-    };
-    result.insert("verdict".to_owned(), json!(verdict));
-    text.to_owned()
+/// Whether each cell sees another one.
+pub(super) fn sights(
+    batch: bool,
+    outlines: &[NamedCell],
+    sights: &[Option<Sight>],
+    result: &mut Map<String, Value>,
+) -> String {
+    if let (false, [one]) = (batch, sights) {
+        result.extend(sight(one.as_ref()));
+        let text = match one {
+            None => "the cells do not see each other",
+            Some(Sight::Touching) => "the cells touch",
+            Some(Sight::Line(_)) => "the cells see each other",
+        };
+        return text.to_owned();
+    }
+    let cells = outlines.iter().zip(sights).map(|(named, one)| {
+        let mut entry = sight(one.as_ref());
+        entry.insert("id".to_owned(), id_value(&named.id));
+        Value::Object(entry)
+    });
+    result.insert("cells".to_owned(), cells.collect());
+    let seeing = sights.iter().flatten().count();
+    result.insert("visible".to_owned(), json!(seeing));
+    let all = counted(sights.len(), "cell", "cells");
+    let see = if seeing == 1 { "sees" } else { "see" };
+    format!("{seeing} of {all} {see} the other cell")
+}
+
+/// The keys of one verdict.
+fn sight(sight: Option<&Sight>) -> Map<String, Value> {
+    let mut out = Map::new();
+    let verdict = if sight.is_some() { "visible" } else { "hidden" };
+    out.insert("verdict".to_owned(), json!(verdict));
+    if let Some(Sight::Line(line)) = sight {
+        let line = line.big().map(|c| c.to_string());
+        out.insert("line".to_owned(), json!(line));
+    }
+    out
 }
 
 /// The visible fragments as a feature each.
@@ -233,7 +306,12 @@ pub(super) fn geojson(
             "geometry": {"type": "MultiPolygon", "coordinates": polygons},
         }));
     }
-    json!({"type": "FeatureCollection", "features": features})
+    let mut out = json!({"type": "FeatureCollection", "features": features});
+    // The coordinates are those of the input, and so is what they mean.
+    if let Some(crs) = input.crs.as_ref().and_then(|c| c.parse().ok()) {
+        out["crs"] = crs;
+    }
+    out
 }
 
 /// The funnels: which part of a segment is seen through which part of a cell's edge, and their extremal lines.
