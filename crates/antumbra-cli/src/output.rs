@@ -84,13 +84,13 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 }
 
 /// Refuses results that cannot be written as asked, before any work is done: each has a path, if it
-/// is wanted, and the extension of its format.
+/// is wanted, and the extensions of its format.
 pub(crate) fn check_outputs(
-    outputs: &[(Option<&PathBuf>, &str)],
+    outputs: &[(Option<&PathBuf>, &[&str])],
     inputs: &[&Path],
 ) -> Result<(), Failure> {
     let mut known: Vec<&PathBuf> = Vec::new();
-    for (path, extension) in outputs {
+    for (path, extensions) in outputs {
         let Some(path) = *path else { continue };
         check_writable(path, inputs)?;
         if known.contains(&path) {
@@ -101,10 +101,11 @@ pub(crate) fn check_outputs(
         }
         known.push(path);
         let given = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-        if given.is_some_and(|given| given != *extension) {
+        if given.is_some_and(|given| !extensions.contains(&given.as_str())) {
             return Err(Failure::Usage(format!(
-                "{}: what is written there is .{extension}; change the file's extension",
-                path.display()
+                "{}: what is written there is .{}; change the file's extension",
+                path.display(),
+                extensions.join(" or .")
             )));
         }
     }

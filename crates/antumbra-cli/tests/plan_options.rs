@@ -280,3 +280,16 @@ fn random_segments_have_lengths_in_reason() {
         .run("gen random-segments --length 0.01 -o a.seg")
         .done();
 }
+
+#[test]
+fn classes_that_nothing_has_do_not_pass_in_silence() {
+    let folder = Folder::new();
+    folder.write("a.seg", "0 2 4 2 wall\n0 4 4 4 glass\n");
+    let run = folder.run("plan a.seg --cell 2,1 --occluders wal");
+    let text = run.failure(2);
+    assert!(text.contains("the classes are glass, wall"), "{text}");
+    let run = folder.run("plan a.seg --cell 2,1 --transparent glas");
+    assert!(run.stderr.contains("nothing has the class glas"), "{run:?}");
+    let run = folder.run("plan a.seg --cell 2,1 --svg a.svg --line-space a.svg");
+    assert!(run.failure(2).contains("two results"), "{run:?}");
+}

@@ -120,10 +120,10 @@ impl CullArgs {
 pub(crate) fn run(args: &CullArgs, global: &Global) -> Result<(), Failure> {
     let inputs = [args.scene.scene.as_path(), args.path.as_path()];
     let outputs = [
-        (args.csv.as_ref(), "csv"),
-        (args.svg.as_ref(), "svg"),
-        (args.top.as_ref(), "svg"),
-        (args.output.as_ref(), "json"),
+        (args.csv.as_ref(), &["csv"][..]),
+        (args.svg.as_ref(), &["svg"]),
+        (args.top.as_ref(), &["svg"]),
+        (args.output.as_ref(), &["json"]),
     ];
     check_outputs(&outputs, &inputs)?;
     let size = args.buffer()?;

@@ -111,9 +111,9 @@ impl MapArgs {
     /// Refuses what cannot work before any work is done.
     fn check(&self) -> Result<(), Failure> {
         let outputs = [
-            (self.svg.as_ref(), "svg"),
-            (self.dxf.as_ref(), "dxf"),
-            (self.output.as_ref(), "json"),
+            (self.svg.as_ref(), &["svg"][..]),
+            (self.dxf.as_ref(), &["dxf"]),
+            (self.output.as_ref(), &["json"]),
         ];
         check_outputs(&outputs, &[self.scene.scene.as_path()])?;
         let drawn = self.svg.is_some() || self.dxf.is_some();

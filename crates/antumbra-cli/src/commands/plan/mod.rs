@@ -17,10 +17,11 @@ use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 
+use crate::classes::check_classes;
 use crate::cli::Global;
 use crate::failure::Failure;
 use crate::load::read_failure;
-use crate::output::{check_writable, counted, seconds, write_file};
+use crate::output::{check_outputs, counted, seconds, write_file};
 use crate::values::positive;
 use cells::{NamedCell, OutlineArg};
 
@@ -192,12 +193,12 @@ impl PlanArgs {
         }
     }
 
-    fn outputs(&self) -> [Option<&PathBuf>; 4] {
+    fn outputs(&self) -> [(Option<&PathBuf>, &'static [&'static str]); 4] {
         [
-            self.svg.as_ref(),
-            self.line_space.as_ref(),
-            self.geojson.as_ref(),
-            self.output.as_ref(),
+            (self.svg.as_ref(), &["svg"]),
+            (self.line_space.as_ref(), &["svg"]),
+            (self.geojson.as_ref(), &["geojson", "json"]),
+            (self.output.as_ref(), &["json"]),
         ]
     }
 
@@ -238,11 +239,11 @@ pub(crate) fn run(args: &PlanArgs, global: &Global) -> Result<(), Failure> {
     }
     let mut inputs = vec![args.plan.as_path()];
     inputs.extend(args.cells.as_deref());
-    for path in args.outputs().into_iter().flatten() {
-        check_writable(path, &inputs)?;
-    }
+    check_outputs(&args.outputs(), &inputs)?;
     let start = Instant::now();
     let input = read_plan(&args.plan, &args.reading()).map_err(|e| read_failure(&e))?;
+    let output = global.output();
+    check_classes(&args.occluders, &args.transparent, &input.classes, output)?;
     let outlines = args.outlines(&input)?;
     let to = args.to.as_ref();
     let to = to.map(|outline| NamedCell::given(outline, "--to", input.projected_around));
