@@ -3,15 +3,18 @@
 //! On paper everything is rounded already; two lines are one where they are no farther apart than rounding
 //! makes them.
 
-/// How many classes of directions there are.
-const DIRECTIONS: usize = 180;
+use rustc_hash::FxHashMap;
+
+/// The width of a square of the index, as a multiple of how far lines are apart that count as one.
+const SQUARE: f64 = 400.0;
 
 type Segment = [[f64; 2]; 2];
 
-/// Segments that are drawn, by direction.
+/// Segments that are drawn, and the squares of the paper that they cross.
 #[derive(Clone, Debug)]
 pub(super) struct Drawn {
-    by_direction: Vec<Vec<Segment>>,
+    segments: Vec<Segment>,
+    squares: FxHashMap<[i32; 2], Vec<u32>>,
     /// How far apart lines are that count as one.
     apart: f64,
 }
@@ -20,15 +23,18 @@ impl Drawn {
     /// An empty paper.
     pub(super) fn new(apart: f64) -> Self {
         Self {
-            by_direction: vec![Vec::new(); DIRECTIONS],
+            segments: Vec::new(),
+            squares: FxHashMap::default(),
             apart,
         }
     }
 
     /// Adds a segment.
     pub(super) fn add(&mut self, segment: Segment) {
-        for class in self.classes(segment) {
-            self.by_direction[class].push(segment);
+        let number = self.segments.len() as u32;
+        self.segments.push(segment);
+        for square in self.crossed(segment) {
+            self.squares.entry(square).or_default().push(number);
         }
     }
 
@@ -36,11 +42,14 @@ impl Drawn {
     pub(super) fn uncovered(&self, segment: Segment) -> Vec<Segment> {
         let [a, b] = segment;
         let length = length(segment);
-        let mut covered: Vec<[f64; 2]> = Vec::new();
-        for class in self.classes(segment) {
-            let here = &self.by_direction[class];
-            covered.extend(here.iter().filter_map(|&s| self.over(segment, length, s)));
+        let mut near: Vec<u32> = Vec::new();
+        for square in self.crossed(segment) {
+            near.extend(self.squares.get(&square).into_iter().flatten());
         }
+        near.sort_unstable();
+        near.dedup();
+        let over = |&n: &u32| self.over(segment, length, self.segments[n as usize]);
+        let mut covered: Vec<[f64; 2]> = near.iter().filter_map(over).collect();
         covered.sort_by(|s, t| s[0].total_cmp(&t[0]));
         let at = |s: f64| {
             let t = s / length;
@@ -58,17 +67,28 @@ impl Drawn {
         out
     }
 
-    /// The directions that a segment may have, as far as rounding can turn it.
-    fn classes(&self, [a, b]: Segment) -> Vec<usize> {
-        let turn = (b[1] - a[1]).atan2(b[0] - a[0]);
-        let slack = 2.0 * self.apart / length([a, b]).max(self.apart);
-        let step = std::f64::consts::PI / DIRECTIONS as f64;
-        let class = |angle: f64| (angle / step).floor() as i64;
-        let (low, high) = (class(turn - slack), class(turn + slack));
-        let count = (high - low + 1).min(DIRECTIONS as i64);
-        (low..low + count)
-            .map(|c| c.rem_euclid(DIRECTIONS as i64) as usize)
-            .collect()
+    /// The squares that a segment comes near to: row by row, or column by column if it is flat.
+    fn crossed(&self, [a, b]: Segment) -> Vec<[i32; 2]> {
+        let size = SQUARE * self.apart;
+        let square = |c: f64| (c / size).floor() as i32;
+        let axis = usize::from((b[1] - a[1]).abs() > (b[0] - a[0]).abs());
+        let other = 1 - axis;
+        let (a, b) = if a[axis] <= b[axis] { (a, b) } else { (b, a) };
+        let slope = (b[other] - a[other]) / (b[axis] - a[axis]).max(f64::MIN_POSITIVE);
+        let mut out = Vec::new();
+        for i in square(a[axis] - self.apart)..=square(b[axis] + self.apart) {
+            let [from, to] = [i, i + 1].map(|i| {
+                let at = (f64::from(i) * size).clamp(a[axis], b[axis]);
+                a[other] + (at - a[axis]) * slope
+            });
+            let (low, high) = (from.min(to) - self.apart, from.max(to) + self.apart);
+            for j in square(low)..=square(high) {
+                let mut place = [0; 2];
+                (place[axis], place[other]) = (i, j);
+                out.push(place);
+            }
+        }
+        out
     }
 
     /// From where to where along a segment another one lies over it.
@@ -128,8 +148,9 @@ mod tests {
         ] {
             assert_eq!(drawn.uncovered(other), [other]);
         }
-        // Steep ones, whose directions are the first and the last class.
-        drawn.add([[0.0, 0.0], [-10.0, -0.01]]);
-        assert!(drawn.uncovered([[-9.0, 0.0], [-1.0, 0.0]]).is_empty());
+        // Steep ones, on the border of two squares.
+        drawn.add([[8.0, -20.0], [8.01, 40.0]]);
+        assert!(drawn.uncovered([[7.995, 30.0], [7.995, -12.0]]).is_empty());
+        assert_eq!(drawn.uncovered([[8.1, 30.0], [8.1, -12.0]]).len(), 1);
     }
 }
