@@ -90,9 +90,12 @@ fn panel(out: &mut String, top: f64, what: &str, lines: &[(&[f64], &str, &str)])
     let count = lines.first().map_or(0, |l| l.0.len());
     let x = |i: usize| LEFT + WIDTH * i as f64 / (count.max(2) - 1) as f64;
     for (k, (values, color, name)) in lines.iter().enumerate() {
+        // A single frame is a level line.
+        let alone = (values.len() == 1).then_some((1, &values[0]));
         let points: Vec<String> = values
             .iter()
             .enumerate()
+            .chain(alone)
             .map(|(i, v)| format!("{:.1},{:.1}", x(i), y(*v)))
             .collect();
         let _ = writeln!(

@@ -66,7 +66,8 @@ pub(super) fn svg(scene: &Scene, culler: &Culler, camera: &Camera, title: &str) 
             (cell.max[1] - cell.min[1]) * scale
         );
     }
-    out.push_str("</g>\n<path fill=\"none\" stroke=\"#111\" stroke-width=\"1.2\" d=\"");
+    out.push_str("</g>\n");
+    let mut walls = String::new();
     for polygon in scene.polygons().filter(|p| p.occludes) {
         let corners: Vec<[f64; 3]> = polygon
             .corners
@@ -83,7 +84,7 @@ pub(super) fn svg(scene: &Scene, culler: &Culler, camera: &Camera, title: &str) 
         }
         if let [a, b] = ends[..] {
             let _ = write!(
-                out,
+                walls,
                 "M{:.1} {:.1}L{:.1} {:.1}",
                 x(a[0]),
                 y(a[1]),
@@ -92,7 +93,12 @@ pub(super) fn svg(scene: &Scene, culler: &Culler, camera: &Camera, title: &str) 
             );
         }
     }
-    out.push_str("\"/>\n");
+    if !walls.is_empty() {
+        let _ = writeln!(
+            out,
+            "<path fill=\"none\" stroke=\"#111\" stroke-width=\"1.2\" d=\"{walls}\"/>"
+        );
+    }
     view(&mut out, camera, [x(eye[0]), y(eye[1])]);
     for (i, (_, color, name)) in KINDS.iter().enumerate() {
         let at = h - 110.0 + 20.0 * i as f64;
