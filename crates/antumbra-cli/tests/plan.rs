@@ -59,6 +59,24 @@ fn a_screen_hides_a_part_of_a_wall() {
     assert_eq!(fragments(&near, 1), Value::Null);
 }
 
+/// Witnesses meet what they see where its fragment is, also where they come from crossings and numbers are long.
+#[test]
+fn witnesses_end_within_their_fragments() {
+    let folder = Folder::new();
+    folder.write(
+        "far.seg",
+        "-8388000 -8388000 -8388000 -8387999\n-1 0 -1 1\n-2796000 0 1 1\n-8388000 -1 1 8387999\n",
+    );
+    let more = ["--grid", "1", "--witnesses"];
+    let seen = plan(&folder, "far.seg", "0,8388000 0,2396571", &more).json();
+    let low = fragments(&seen, 1)[0][0].as_f64().expect("a number");
+    let lines = seen["witnesses"].as_array().expect("a list");
+    let line = lines.iter().find(|w| w["ids"][0] == 1).expect("a witness");
+    let to = [0, 1].map(|k| line["to"][k].as_f64().expect("a number"));
+    assert_eq!(to[0], -1.0);
+    assert!(low < to[1] && to[1] < 1.0, "{low} {to:?}");
+}
+
 #[test]
 fn cells_that_are_no_convex_regions() {
     let folder = folder();

@@ -10,7 +10,7 @@ use antumbra_kernel::{Grid, LIMIT, Point2};
 
 use super::kd::PlanKd;
 use super::near::{Nearness, Raster, nearness};
-use super::{Owner, Plan, PlanInput, PlanReport, SegmentId};
+use super::{Owner, Plan, PlanInput, PlanReport, SegmentId, along};
 use crate::OccluderPolicy;
 
 /// How to build a plan.
@@ -294,11 +294,6 @@ fn split_bent(
     *chain = out;
 }
 
-fn along([a, b]: [Point2; 2], p: Point2) -> i64 {
-    let ([ax, ay], [bx, by], [px, py]) = (a.to_i64(), b.to_i64(), p.to_i64());
-    (px - ax) * (bx - ax) + (py - ay) * (by - ay)
-}
-
 fn sort_along(points: &mut Vec<Point2>, ends: [Point2; 2]) {
     points.sort_unstable_by_key(|&p| (along(ends, p), p));
     points.dedup();
@@ -309,14 +304,9 @@ fn push_parts(parts: &mut Vec<Part>, id: u32, s: &Snapped, chain: &[Point2], occ
     if start == end {
         return;
     }
-    let length = along(s.ends, end) as f64;
-    // Exact numerator and denominator below 2^52, so the quotient is rounded once; corners put in
-    // from the side may lie beyond the ends.
-    let at = |p: Point2| match p {
-        p if p == start => 0.0,
-        p if p == end => 1.0,
-        p => (along(s.ends, p) as f64 / length).clamp(0.0, 1.0),
-    };
+    let whole = along(s.ends, end);
+    // Corners put in from the side may lie beyond the ends.
+    let at = |p: Point2| along(s.ends, p).clamp(0, whole);
     let mut from = start;
     for (order, &to) in chain.iter().chain([&end]).enumerate() {
         let (mut ends, mut t) = ([from, to], [at(from), at(to)]);
@@ -327,6 +317,7 @@ fn push_parts(parts: &mut Vec<Part>, id: u32, s: &Snapped, chain: &[Point2], occ
         let owner = Owner {
             segment: SegmentId(id),
             at: t,
+            whole,
         };
         parts.push(Part {
             ends,
@@ -406,14 +397,13 @@ mod tests {
             1.0,
         );
         assert_eq!(p.pieces().len(), 3);
-        let owners = |i| -> Vec<(u32, [f64; 2])> {
+        let owners = |i| -> Vec<(u32, [i64; 2], i64)> {
             let list = p.owners(PieceId(i)).iter();
-            list.map(|o| (o.segment.0, o.at)).collect()
+            list.map(|o| (o.segment.0, o.at, o.whole)).collect()
         };
-        let third = 2.0 / 6.0;
-        assert_eq!(owners(0), [(0, [0.0, third])]);
-        assert_eq!(owners(1), [(0, [third, 1.0]), (1, [1.0, third])]);
-        assert_eq!(owners(2), [(1, [third, 0.0])]);
+        assert_eq!(owners(0), [(0, [0, 12], 36)]);
+        assert_eq!(owners(1), [(0, [12, 36], 36), (1, [36, 12], 36)]);
+        assert_eq!(owners(2), [(1, [12, 0], 36)]);
         assert_eq!(p.report().points.len(), 1);
         assert_eq!(p.report().shared, 1);
     }

@@ -9,7 +9,7 @@ mod convex;
 
 use antumbra_kernel::{LIMIT, Point2, Rect, orient2d};
 
-use super::Plan;
+use super::{Plan, along};
 use convex::{convex_parts, hull};
 
 /// A convex source of lines.
@@ -201,6 +201,37 @@ impl PlanCell {
             }
         };
         Ok(Self { parts: vec![shape] })
+    }
+
+    /// Whether a segment meets the open interior of the whole cell: that of a part, or a cut between two. Exact.
+    #[must_use]
+    pub fn enters(&self, piece: [Point2; 2]) -> bool {
+        self.parts.iter().any(|part| part.enters(piece)) || self.runs_along_a_cut(piece)
+    }
+
+    /// Whether parts lie on both sides of some stretch of a segment.
+    fn runs_along_a_cut(&self, [a, b]: [Point2; 2]) -> bool {
+        let end = along([a, b], b);
+        let (mut left, mut right) = (Vec::new(), Vec::new());
+        for part in &self.parts {
+            let CellShape::Region(corners) = part else {
+                continue;
+            };
+            for (p, q) in edges(corners) {
+                if orient2d(a, b, p) != 0 || orient2d(a, b, q) != 0 {
+                    continue;
+                }
+                // Parts are on the left of their edges.
+                let (s, t) = (along([a, b], p), along([a, b], q));
+                if s < t {
+                    left.push([s.max(0), t.min(end)]);
+                } else {
+                    right.push([t.max(0), s.min(end)]);
+                }
+            }
+        }
+        let overlap = |l: &[i64; 2], r: &[i64; 2]| l[0].max(r[0]) < l[1].min(r[1]);
+        left.iter().any(|l| right.iter().any(|r| overlap(l, r)))
     }
 }
 

@@ -67,13 +67,21 @@ pub struct SegmentId(pub u32);
 pub struct PieceId(pub u32);
 
 /// A segment that a piece belongs to, and where on it the piece lies.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Owner {
     /// The input segment.
     pub segment: SegmentId,
-    /// The parameters of the piece's ends along that segment, from 0 to 1. Rounded to nearest; exactly
-    /// 0 and 1 at the segment's own ends.
-    pub at: [f64; 2],
+    /// How far along that segment the piece's ends are, of [`Owner::whole`]: exact, and 0 and all of it at the
+    /// segment's own ends.
+    pub at: [i64; 2],
+    /// The whole segment in the same measure: its squared length, below 2^50.
+    pub whole: i64,
+}
+
+/// How far along the way from a to b a point is, times the length of the way.
+fn along([a, b]: [Point2; 2], p: Point2) -> i64 {
+    let ([ax, ay], [bx, by], [px, py]) = (a.to_i64(), b.to_i64(), p.to_i64());
+    (px - ax) * (bx - ax) + (py - ay) * (by - ay)
 }
 
 /// What was done to the segments of a plan.

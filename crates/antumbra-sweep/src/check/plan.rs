@@ -13,7 +13,7 @@ use antumbra_kernel::{Point2, orient2d};
 use dashu_int::IBig;
 
 use crate::proof::{PlanProof, PlanProofChild, PlanProofFragment, PlanProofTree};
-use cone::{Cone, Line, Side, at};
+use cone::{Cone, Line, Side, at, crossing};
 use hull::Hull;
 
 /// What was checked.
@@ -284,23 +284,43 @@ impl Checker<'_> {
                     stack.extend(left.map(|c| (node.children[1], c)));
                     true
                 }
-                // What is seen of the piece here is claimed, or another one is in front of it.
-                leaf => {
-                    piece.is_some_and(|id| self.within_fragments(id, &cone))
-                        || match leaf {
-                            PlanProofChild::Blocked(k) if Some(k) != piece => {
-                                self.blocks.get(k as usize) == Some(&true)
-                                    && cone.blocked_by(self.pieces[k as usize], window, target)
-                            }
-                            _ => false,
-                        }
+                PlanProofChild::Blocked(k) if Some(k) != piece => {
+                    self.hidden_behind(k, &cone, window, target, piece)
                 }
+                _ => piece.is_some_and(|id| self.within_fragments(id, &cone)),
             };
             if !ok {
                 return false;
             }
         }
         true
+    }
+
+    /// Whether an occluder is in front of a target on all lines of a cone, but for what is claimed to be seen.
+    fn hidden_behind(
+        &self,
+        k: u32,
+        cone: &Cone,
+        window: [Point2; 2],
+        target: &[Point2],
+        piece: Option<u32>,
+    ) -> bool {
+        let seen = |cone: &Cone| piece.is_some_and(|id| self.within_fragments(id, cone));
+        if seen(cone) {
+            return true;
+        }
+        if self.blocks.get(k as usize) != Some(&true) {
+            return false;
+        }
+        let own = self.pieces[k as usize];
+        if cone.blocked_by(own, window, target) {
+            return true;
+        }
+        // A piece that blocks nothing cuts no tree: where the occluder crosses it, the two change places.
+        let &[p, q] = target else { return false };
+        let parts = cone.clone().cut(&crossing(own, [p, q]));
+        let mut parts = parts.iter().flatten();
+        parts.all(|part| seen(part) || part.blocked_by(own, window, target))
     }
 
     fn within_fragments(&self, id: u32, cone: &Cone) -> bool {

@@ -3,6 +3,7 @@
 use antumbra_kernel::Point2;
 use antumbra_lines::ExactRay;
 use dashu_int::IBig;
+use dashu_int::ops::BitTest;
 
 /// A line by its exact coefficients in grid coordinates.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -74,7 +75,6 @@ impl PlanLine {
         match self {
             Self::Small(l) => l.map(|c| c as f64),
             Self::Big(l) => {
-                use dashu_int::ops::BitTest;
                 let bits = l.iter().map(|c| c.bit_len()).max().unwrap_or(0);
                 let shift = bits.saturating_sub(120);
                 let lower = |c: &IBig| i128::try_from(c >> shift).unwrap_or(0) as f64;
@@ -83,22 +83,35 @@ impl PlanLine {
         }
     }
 
-    /// The sum of some lines: strictly inside their cone if they span one with an interior.
+    /// How many bits the larger coefficient of its direction has.
+    fn bits(&self) -> usize {
+        match self {
+            Self::Small([a, b, _]) => {
+                (64 - (a.unsigned_abs() | b.unsigned_abs()).leading_zeros()) as usize
+            }
+            Self::Big(l) => l[0].bit_len().max(l[1].bit_len()),
+        }
+    }
+
+    /// The sum of some lines that all meet the grid: strictly inside their cone if they span one with an interior.
+    ///
+    /// Powers of two make all of about the same length, so that the sum is near none of them.
     #[must_use]
     pub fn sum(lines: &[Self]) -> Self {
+        let most = lines.iter().map(Self::bits).max().unwrap_or(0);
         let mut total = [0_i128; 3];
         for line in lines {
             let Self::Small(l) = line else {
                 let mut total = [IBig::ZERO, IBig::ZERO, IBig::ZERO];
                 for line in lines {
                     for (t, c) in total.iter_mut().zip(line.big()) {
-                        *t += c;
+                        *t += c << (most - line.bits());
                     }
                 }
                 return Self::new(total);
             };
             for k in 0..3 {
-                total[k] += i128::from(l[k]);
+                total[k] += i128::from(l[k]) << (most - line.bits());
             }
         }
         match total.map(i64::try_from) {

@@ -8,7 +8,7 @@ use std::cmp::Ordering;
 
 use antumbra_kernel::Point2;
 use dashu_int::IBig;
-use dashu_int::ops::{Gcd, UnsignedAbs};
+use dashu_int::ops::{BitTest, DivRem, Gcd, UnsignedAbs};
 
 use super::line::PlanLine;
 
@@ -59,6 +59,29 @@ impl Ratio {
             Exact::Small(n, d) => small(*d - *n, *d),
             Exact::Big(parts) => big(&parts.1 - &parts.0, parts.1.clone()),
         }
+    }
+
+    /// The place this far on the way between two places, all of a whole.
+    #[must_use]
+    pub fn between(&self, [from, to]: [i64; 2], whole: i64) -> Self {
+        if from == 0 && to == whole {
+            return self.clone();
+        }
+        match &self.exact {
+            Exact::Small(0, _) => small(from, whole),
+            Exact::Small(n, d) if n == d => small(to, whole),
+            Exact::Small(..) | Exact::Big(_) => {
+                let (n, d) = self.parts();
+                big(&d * from + n * (to - from), d * whole)
+            }
+        }
+    }
+
+    /// The point this far along a segment, each coordinate rounded once.
+    #[must_use]
+    pub fn point_on(&self, [p, q]: [Point2; 2]) -> [f64; 2] {
+        let (n, d) = self.parts();
+        [(p.x, q.x), (p.y, q.y)].map(|(p, q)| nearest(&(&d * p + &n * (q - p)), &d))
     }
 
     /// Where a line meets a segment; `None` if it runs along it.
@@ -117,16 +140,24 @@ fn big(n: IBig, d: IBig) -> Ratio {
     {
         return small(n, d);
     }
-    // At least 55 bits of the quotient, the last one odd if anything is left: rounds to nearest.
-    let shift = 120_usize;
-    let scaled = &n << shift;
-    let quotient = &scaled / &d;
-    let left = scaled != &quotient * &d;
-    let bits = u128::try_from(quotient.unsigned_abs()).unwrap_or(1 << shift) | u128::from(left);
-    let value = bits as f64 / (1_u128 << shift) as f64;
     Ratio {
-        value,
+        value: nearest(&n, &d),
         exact: Exact::Big(Box::new((n, d))),
+    }
+}
+
+/// The double nearest to a fraction below 2^62 in magnitude with a positive denominator.
+fn nearest(n: &IBig, d: &IBig) -> f64 {
+    // At least 64 bits of the quotient, the last one odd if anything is left.
+    let shift = (65 + d.bit_len()).saturating_sub(n.bit_len());
+    let scaled = n.unsigned_abs() << shift;
+    let (quotient, left) = scaled.div_rem(d.unsigned_abs());
+    let bits = u128::try_from(quotient).unwrap_or(u128::MAX) | u128::from(!left.is_zero());
+    let magnitude = bits as f64 * 0.5_f64.powi(shift as i32);
+    if *n < IBig::ZERO {
+        -magnitude
+    } else {
+        magnitude
     }
 }
 
@@ -169,6 +200,7 @@ impl Ord for Ratio {
 #[cfg(test)]
 mod tests {
     use super::{Ratio, big, small};
+    use antumbra_kernel::Point2;
     use dashu_int::IBig;
 
     #[test]
@@ -180,6 +212,18 @@ mod tests {
         assert_eq!(third.rest(), small(2, 3));
         assert_eq!(small(-1, -3), third);
         assert_eq!(Ratio::ONE.rest(), Ratio::ZERO);
+    }
+
+    #[test]
+    fn fractions_are_rounded_once_however_small_they_are() {
+        let tiny = big(IBig::from(3), IBig::ONE << 200);
+        assert_eq!(tiny.value(), 3.0 * 0.5_f64.powi(200));
+        // 2/3 by way of thirds and quarters of other denominators.
+        assert_eq!(small(1, 3).between([4, 8], 8).value(), 2.0 / 3.0);
+        assert_eq!(small(5, 9).between([9, 0], 9).value(), 4.0 / 9.0);
+        assert_eq!(Ratio::ONE.between([1, 3], 7).value(), 3.0 / 7.0);
+        let ends = [Point2::new(-3, 5), Point2::new(4, 5)];
+        assert_eq!(small(1, 3).point_on(ends), [-2.0 / 3.0, 5.0]);
     }
 
     #[test]

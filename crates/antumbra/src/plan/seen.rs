@@ -1,6 +1,6 @@
 //! From views of convex parts to the segments of the input.
 
-use antumbra_scene::plan::{PieceId, Plan, PlanCell, SegmentId};
+use antumbra_scene::plan::{Plan, PlanCell, SegmentId};
 use antumbra_sweep::Accuracy;
 use antumbra_sweep::plan::{Fragment, PlanView, PlanWork, Ratio, ViewOptions, look};
 use rayon::prelude::*;
@@ -12,7 +12,7 @@ pub struct Seen {
     pub segments: Vec<SeenSegment>,
     /// The views of the cell's convex parts.
     pub parts: Vec<PlanView>,
-    /// Exact if all parts are.
+    /// Exact, or conservative if an occluder meets the open interior of the whole cell.
     pub accuracy: Accuracy,
     /// What was done for all parts.
     pub work: PlanWork,
@@ -38,7 +38,11 @@ pub fn see(plan: &Plan, cell: &PlanCell, options: &ViewOptions) -> Seen {
         .iter()
         .map(|part| look(plan, part, options))
         .collect();
-    let exact = parts.iter().all(|v| v.accuracy == Accuracy::Exact);
+    let entered = parts.iter().flat_map(|v| &v.touching).any(|&id| {
+        // One convex part has asked already.
+        parts.len() > 1 && plan.occludes(id) && cell.enters(plan.pieces()[id.0 as usize])
+    });
+    let exact = !entered && parts.iter().all(|v| v.accuracy == Accuracy::Exact);
     let mut work = PlanWork::default();
     for part in &parts {
         work.add(&part.work);
@@ -64,7 +68,7 @@ pub fn see_all(plan: &Plan, cells: &[PlanCell], options: &ViewOptions) -> Vec<Se
 /// An interval of an owner.
 struct Span {
     segment: SegmentId,
-    at: [f64; 2],
+    at: [Ratio; 2],
     touching: bool,
 }
 
@@ -74,57 +78,59 @@ fn segments(plan: &Plan, parts: &[PlanView]) -> Vec<SeenSegment> {
         for &piece in &view.touching {
             spans.extend(plan.owners(piece).iter().map(|o| Span {
                 segment: o.segment,
-                at: [0.0, 1.0],
+                at: [Ratio::ZERO, Ratio::ONE],
                 touching: true,
             }));
         }
         for f in &view.fragments {
-            spans.extend(owned(plan, f.piece, f));
+            spans.extend(owned(plan, f));
         }
     }
     spans.extend(points_inside(plan, parts));
     spans.sort_by(|a, b| {
         (a.segment, !a.touching)
             .cmp(&(b.segment, !b.touching))
-            .then(a.at[0].total_cmp(&b.at[0]))
+            .then_with(|| a.at[0].cmp(&b.at[0]))
     });
     let mut out: Vec<SeenSegment> = Vec::new();
+    // Where the last fragment ends: doubles would close gaps that they do not show.
+    let mut reached = Ratio::ZERO;
     for span in spans {
+        let [from, to] = span.at;
+        let fragment = [from.value(), to.value()];
         match out.last_mut() {
             Some(last) if last.segment == span.segment => {
-                if let Some(end) = last.fragments.last_mut()
-                    && span.at[0] <= end[1]
-                {
-                    end[1] = end[1].max(span.at[1]);
-                } else {
-                    last.fragments.push(span.at);
+                if from > reached {
+                    last.fragments.push(fragment);
+                } else if to <= reached {
+                    continue;
+                } else if let Some(end) = last.fragments.last_mut() {
+                    end[1] = fragment[1];
                 }
             }
             _ => out.push(SeenSegment {
                 segment: span.segment,
                 touching: span.touching,
-                fragments: vec![span.at],
+                fragments: vec![fragment],
             }),
         }
+        reached = to;
     }
     out
 }
 
 /// A fragment as intervals of the segments that own its piece.
-fn owned<'p>(plan: &'p Plan, piece: PieceId, f: &'p Fragment) -> impl Iterator<Item = Span> + 'p {
-    plan.owners(piece).iter().map(|o| {
-        let [from, to] = o.at;
-        let place = |r: &Ratio| match (from, to) {
-            _ if *r == Ratio::ZERO => from,
-            _ if *r == Ratio::ONE => to,
-            (0.0, 1.0) => r.value(),
-            (1.0, 0.0) => r.rest().value(),
-            _ => from + r.value() * (to - from),
+fn owned<'p>(plan: &'p Plan, f: &'p Fragment) -> impl Iterator<Item = Span> + 'p {
+    plan.owners(f.piece).iter().map(|o| {
+        let [low, high] = &f.at;
+        let places = if o.at[0] <= o.at[1] {
+            [low, high]
+        } else {
+            [high, low]
         };
-        let (a, b) = (place(&f.at[0]), place(&f.at[1]));
         Span {
             segment: o.segment,
-            at: [a.min(b), a.max(b)],
+            at: places.map(|r| r.between(o.at, o.whole)),
             touching: false,
         }
     })
@@ -137,7 +143,7 @@ fn points_inside<'p>(plan: &'p Plan, parts: &'p [PlanView]) -> impl Iterator<Ite
         .filter(|(_, p)| parts.iter().any(|v| v.cell.meets_segment([*p, *p])))
         .map(|&(segment, _)| Span {
             segment,
-            at: [0.0, 1.0],
+            at: [Ratio::ZERO, Ratio::ONE],
             touching: true,
         })
 }

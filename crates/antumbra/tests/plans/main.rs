@@ -1,5 +1,7 @@
 //! Plans against an oracle that shares no code with the engine, on tiny lattices and on measured plans.
 
+mod cases;
+mod glass;
 mod ladder;
 mod mutual;
 mod rays;

@@ -167,7 +167,7 @@ fn second_pass(plan: &Plan, shape: &CellShape) {
 }
 
 /// The certificate holds, and altered ones do not.
-fn certificate(plan: &Plan, shape: &CellShape, random: &mut Random) {
+pub(crate) fn certificate(plan: &Plan, shape: &CellShape, random: &mut Random) {
     let options = SeeOptions {
         proof: true,
         one_tree: random.index(2) == 0,

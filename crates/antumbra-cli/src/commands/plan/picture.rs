@@ -195,10 +195,10 @@ fn hidden_from_all<'v>(plan: &Plan, views: impl Iterator<Item = &'v PlanView>) -
 /// The extremal lines of the funnels, from the cell to what they see.
 fn extremal(paper: &Paper, plan: &Plan, view: &PlanView, out: &mut String) {
     for f in &view.funnels {
-        let target = plan.pieces()[f.piece.0 as usize].map(|p| p.to_f64());
+        let target = plan.pieces()[f.piece.0 as usize];
         for line in &f.lines {
             let from = match view.windows.get(f.window as usize) {
-                Some(w) => meet(line, [w.a.to_f64(), w.b.to_f64()]),
+                Some(w) => meet(line, [w.a, w.b]),
                 None => view.cell.corners()[0].to_f64(),
             };
             let _ = write!(

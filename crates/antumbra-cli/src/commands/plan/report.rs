@@ -2,8 +2,9 @@
 
 use std::time::Instant;
 
+use antumbra::kernel::Point2;
 use antumbra::plan::{
-    Accuracy, Fragment, Funnel, Isovist, Plan, PlanInput, PlanLine, PlanView, Seen, Sight,
+    Accuracy, Fragment, Funnel, Isovist, Plan, PlanInput, PlanLine, PlanView, Ratio, Seen, Sight,
 };
 use antumbra_io::plan::Projection;
 use serde_json::{Map, Value, json};
@@ -71,10 +72,9 @@ fn cell(args: &PlanArgs, plan: &Plan, seen: &Seen, area: Option<&Isovist>) -> Ma
 /// A line that sees a fragment: from the edge of the cell to the segment, and exactly as `a x + b y + c` in grid
 /// steps from the grid's origin.
 fn witness(plan: &Plan, view: &PlanView, f: &Fragment) -> Value {
-    let target = plan.pieces()[f.piece.0 as usize];
-    let to = meet(&f.witness, target.map(|p| p.to_f64()));
+    let to = meet(&f.witness, plan.pieces()[f.piece.0 as usize]);
     let from = match view.windows.get(f.window as usize) {
-        Some(w) => meet(&f.witness, [w.a.to_f64(), w.b.to_f64()]),
+        Some(w) => meet(&f.witness, [w.a, w.b]),
         None => view.cell.corners()[0].to_f64(),
     };
     let ids: Vec<u32> = plan.owners(f.piece).iter().map(|o| o.segment.0).collect();
@@ -82,17 +82,10 @@ fn witness(plan: &Plan, view: &PlanView, f: &Fragment) -> Value {
     json!({"ids": ids, "from": plan.to_scene_f64(from), "to": plan.to_scene_f64(to), "line": line})
 }
 
-/// Where a line meets a segment, rounded.
-pub(super) fn meet(line: &PlanLine, [p, q]: [[f64; 2]; 2]) -> [f64; 2] {
-    let l = line.rounded();
-    let at = |p: [f64; 2]| l[0] * p[0] + l[1] * p[1] + l[2];
-    let (u, v) = (at(p), at(q));
-    let t = if u == v {
-        0.0
-    } else {
-        (u / (u - v)).clamp(0.0, 1.0)
-    };
-    [0, 1].map(|k| p[k] + t * (q[k] - p[k]))
+/// Where a line meets a segment, rounded once; the first end if it runs along it.
+pub(super) fn meet(line: &PlanLine, segment: [Point2; 2]) -> [f64; 2] {
+    let place = Ratio::on_segment(segment, line).unwrap_or(Ratio::ZERO);
+    place.point_on(segment)
 }
 
 pub(super) fn seen(
@@ -328,12 +321,12 @@ pub(super) fn funnels(plan: &Plan, outlines: &[NamedCell], seen: &[Seen]) -> Val
 }
 
 fn funnel(plan: &Plan, view: &PlanView, f: &Funnel) -> Value {
-    let target = plan.pieces()[f.piece.0 as usize].map(|p| p.to_f64());
+    let target = plan.pieces()[f.piece.0 as usize];
     let ids: Vec<u32> = plan.owners(f.piece).iter().map(|o| o.segment.0).collect();
     let window = view.windows.get(f.window as usize);
     let ends = |line: &PlanLine| {
         let from = match window {
-            Some(w) => meet(line, [w.a.to_f64(), w.b.to_f64()]),
+            Some(w) => meet(line, [w.a, w.b]),
             None => view.cell.corners()[0].to_f64(),
         };
         json!([
@@ -348,9 +341,6 @@ fn funnel(plan: &Plan, view: &PlanView, f: &Funnel) -> Value {
         .map(|l| l.big().map(|c| c.to_string()))
         .collect();
     let edge = window.map(|w| [plan.to_scene(w.a), plan.to_scene(w.b)]);
-    let span = [0, 1].map(|k| {
-        let t = f.at[k].value();
-        plan.to_scene_f64([0, 1].map(|i| target[0][i] + t * (target[1][i] - target[0][i])))
-    });
+    let span = [0, 1].map(|k| plan.to_scene_f64(f.at[k].point_on(target)));
     json!({"ids": ids, "window": edge, "sees": span, "extremal_lines": lines, "exact": exact})
 }

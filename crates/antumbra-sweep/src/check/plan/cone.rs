@@ -34,6 +34,11 @@ fn point(p: Point2) -> Triple {
     [IBig::from(p.x), IBig::from(p.y), IBig::ONE]
 }
 
+/// Where the lines of two segments cross.
+pub(super) fn crossing([a, b]: [Point2; 2], [p, q]: [Point2; 2]) -> Triple {
+    cross(&cross(&point(a), &point(b)), &cross(&point(p), &point(q)))
+}
+
 /// The value of a line at a point.
 pub(super) fn at(line: &Triple, p: Point2) -> IBig {
     &line[0] * p.x + &line[1] * p.y + &line[2]
