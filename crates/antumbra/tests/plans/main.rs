@@ -1,5 +1,6 @@
 //! Plans against an oracle that shares no code with the engine, on tiny lattices and on measured plans.
 
+mod isovist;
 mod ladder;
 mod mutual;
 mod rays;
