@@ -6,7 +6,7 @@ use dashu_int::IBig;
 use dashu_int::ops::BitTest;
 
 /// A line by its exact coefficients in grid coordinates.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum PlanLine {
     /// Coefficients that fit: all lines on two grid points do.
     Small([i64; 3]),
@@ -32,6 +32,15 @@ impl PlanLine {
     #[must_use]
     pub fn through(a: Point2, b: Point2) -> Self {
         Self::Small(antumbra_kernel::line2d(a, b))
+    }
+
+    /// The same line, looked along the other way.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        match self {
+            Self::Small(l) if l.iter().all(|&c| c != i64::MIN) => Self::Small(l.map(|c| -c)),
+            _ => Self::new(self.big().map(|c| -c)),
+        }
     }
 
     /// From doubles that round integers: those below 2^53 are exact. `None` if one is larger.

@@ -5,6 +5,7 @@
 //! opened. The leaves of the finished trees are the funnels, from which come the visible fragments.
 
 mod answer;
+mod area;
 mod certificate;
 mod distance;
 mod line;
@@ -24,6 +25,7 @@ use crate::proof::PlanProof;
 use crate::verdict::Accuracy;
 
 pub use answer::{Fragment, Funnel};
+pub use area::{Outlines, union};
 pub use line::PlanLine;
 use point::PointLines;
 pub use ratio::Ratio;
@@ -32,7 +34,7 @@ pub use region::Window;
 pub use sight::{Sight, sights};
 pub use sweep::{Growth, PlanWork};
 use sweep::{How, Source, Swept, sweep};
-pub use tiles::{frame, tiles};
+pub use tiles::{Tile, frame, tiles};
 
 /// How to look.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

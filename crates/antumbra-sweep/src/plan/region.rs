@@ -471,8 +471,8 @@ impl Source for RegionLines {
         points.iter().all(|&p| segment.depth(p) >= 0)
     }
 
-    fn depth_key(&self, occluder: Occluder) -> u32 {
-        self.space.segment(occluder).key
+    fn segment(&self, occluder: Occluder) -> &SegmentOccluder {
+        self.space.segment(occluder)
     }
 }
 

@@ -7,7 +7,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use antumbra_kernel::{Point2, Rect};
-use antumbra_lines::{DepthSpace, LineSpace, Occluder, OcclusionTree};
+use antumbra_lines::{DepthSpace, LineSpace, Occluder, OcclusionTree, SegmentOccluder};
 use antumbra_scene::plan::{PieceId, Plan};
 use rustc_hash::FxHashSet;
 
@@ -80,8 +80,13 @@ pub(super) trait Source {
     /// Whether points lie behind an occluder, or on its line. Exact.
     fn is_behind(&self, occluder: Occluder, points: &[Point2]) -> bool;
 
+    /// The segment of an occluder, with its ends on the left and on the right of the lines that meet it.
+    fn segment(&self, occluder: Occluder) -> &SegmentOccluder;
+
     /// The piece of an occluder.
-    fn depth_key(&self, occluder: Occluder) -> u32;
+    fn depth_key(&self, occluder: Occluder) -> u32 {
+        self.segment(occluder).key
+    }
 }
 
 /// What a sweep did.

@@ -1,12 +1,10 @@
 //! The area that is seen, in tiles: each funnel sweeps the area between its window and what it sees.
 //!
-//! A frame of four segments around everything closes the view. The area that a funnel sweeps is bounded by its
-//! window, by what it sees, and on both sides by chains: the points left of all its lines make a convex set, and
-//! so do those right of them. The corners of the chains are points of the plan: the funnel's facets. Which they
-//! are, and in which order, is decided exactly; their coordinates and ends are rounded, for output.
+//! A frame of four segments around everything closes the view. A point lies in the tile of a funnel if it is beyond
+//! the window, before what is seen, and on some line of the funnel: then some of the funnel's extreme lines have it on their
+//! left, others on their right. So a tile is a few lines with signs, all exact; no corner of it is ever computed.
 
 use antumbra_kernel::{LIMIT, Point2, Rect};
-use antumbra_lines::Half;
 use antumbra_scene::plan::{CellShape, Plan};
 
 use super::answer::blocked;
@@ -16,12 +14,16 @@ use super::region::RegionLines;
 use super::sweep::{How, Source, Swept, sweep};
 use crate::occlusion::{BoxTest, SweepOrder};
 
-/// The part of the plane that is looked at: a box around plan and cell.
+/// The part of the plane that is looked at: a box around the plan, with its segments without length, and the parts of a cell.
 #[must_use]
-pub fn frame(plan: &Plan, cell: &CellShape) -> Rect {
-    let around = cell.bounds();
-    let all = plan.bounds().map_or(around, |b| {
-        Rect::around([b.min, b.max, around.min, around.max]).unwrap_or(b)
+pub fn frame(plan: &Plan, cell: &[CellShape]) -> Rect {
+    let ends = |r: Rect| [r.min, r.max];
+    let points = plan.points().iter().map(|&(_, p)| p);
+    let cell = cell.iter().flat_map(|part| ends(part.bounds()));
+    let corners = plan.bounds().map(ends).into_iter().flatten();
+    let all = Rect::around(corners.chain(cell).chain(points)).unwrap_or(Rect {
+        min: Point2::new(0, 0),
+        max: Point2::new(0, 0),
     });
     let margin = 1 + (all.max.x - all.min.x).max(all.max.y - all.min.y) / 64;
     let keep = |v: i32| v.clamp(2 - LIMIT, LIMIT - 2);
@@ -31,9 +33,42 @@ pub fn frame(plan: &Plan, cell: &CellShape) -> Rect {
     }
 }
 
-/// The outlines of the tiles in grid steps, counter-clockwise; and whether each ends at the frame. They may overlap.
+/// A bounded set of points, by exact lines.
+#[derive(Clone, Debug)]
+pub struct Tile {
+    /// Lines that have all of the tile on their left.
+    pub halves: Vec<PlanLine>,
+    /// The extreme lines of a funnel: every point of the tile is on the left of some and on the right of others. None
+    /// for a convex tile.
+    pub fan: Vec<PlanLine>,
+    /// A box around the tile in grid steps: smallest and largest coordinates.
+    pub bounds: [[f64; 2]; 2],
+    /// Whether it ends at the frame.
+    pub framed: bool,
+}
+
+impl Tile {
+    /// A convex polygon, given counter-clockwise; `None` if it is no region.
+    #[must_use]
+    pub fn region(cell: &CellShape) -> Option<Self> {
+        let CellShape::Region(corners) = cell else {
+            return None;
+        };
+        let n = corners.len();
+        Some(Self {
+            halves: (0..n)
+                .map(|k| PlanLine::through(corners[k], corners[(k + 1) % n]))
+                .collect(),
+            fan: Vec::new(),
+            bounds: around(corners.iter().map(|c| c.to_f64())),
+            framed: false,
+        })
+    }
+}
+
+/// The tiles of a convex cell, which may overlap. Those of a point do not.
 #[must_use]
-pub fn tiles(plan: &Plan, cell: &CellShape, frame: &Rect) -> Vec<(Vec<[f64; 2]>, bool)> {
+pub fn tiles(plan: &Plan, cell: &CellShape, frame: &Rect) -> Vec<Tile> {
     let how = How {
         order: SweepOrder::Priority,
         test: BoxTest::Exact,
@@ -44,62 +79,77 @@ pub fn tiles(plan: &Plan, cell: &CellShape, frame: &Rect) -> Vec<(Vec<[f64; 2]>,
         CellShape::Point(eye) => {
             let mut swept = sweep(plan, PointLines::new(*eye), how);
             close(&mut swept, frame);
-            let roots = swept.source.roots();
-            let mut cells = Vec::new();
-            blocked(
-                swept.source.space(),
-                &swept.trees[0],
-                roots,
-                |_, wedge, k| {
-                    cells.push((*wedge, k));
-                },
-            );
-            let eye = eye.to_f64();
-            cells
-                .into_iter()
-                .map(|(wedge, k)| {
-                    let (target, framed) = target(plan, frame, swept.source.depth_key(k));
-                    let lines = swept.source.extremal(&wedge);
-                    let hits = lines.iter().map(|l| meet(l, target));
-                    ([eye].into_iter().chain(hits).collect(), framed)
-                })
-                .collect()
+            point_tiles(*eye, &mut swept)
         }
-        _ => {
+        CellShape::Segment(_) | CellShape::Region(_) => {
             let source = RegionLines::new(plan, cell.clone(), false);
             let mut swept = sweep(plan, source, how);
             close(&mut swept, frame);
-            let mut out = Vec::new();
-            for window in 0..swept.source.windows().len() {
-                let tree = &swept.trees[window];
-                let roots = swept.source.roots(window, tree);
-                let mut cells = Vec::new();
-                blocked(swept.source.space(), tree, roots, |_, cone, k| {
-                    cells.push((cone.clone(), k));
-                });
-                let w = swept.source.windows()[window];
-                for (cone, k) in cells {
-                    let (target, framed) = target(plan, frame, swept.source.depth_key(k));
-                    let facets: Vec<([f64; 2], Half)> = cone
-                        .corners
-                        .iter()
-                        .map(|c| {
-                            let [x, y, w] = swept.source.point_of(c.plane).map(|v| v as f64);
-                            ([x / w, y / w], c.side)
-                        })
-                        .collect();
-                    let tile = Tile {
-                        lines: swept.source.extremal(&cone),
-                        facets,
-                        window: [w.a, w.b],
-                        target,
-                    };
-                    out.push((tile.outline(), framed));
-                }
-            }
-            out
+            let windows = 0..swept.source.windows().len();
+            windows
+                .flat_map(|window| window_tiles(window, &mut swept))
+                .collect()
         }
     }
+}
+
+/// Wedges from the eye to what is seen.
+fn point_tiles(eye: Point2, swept: &mut Swept<PointLines>) -> Vec<Tile> {
+    let source = &mut swept.source;
+    let roots = source.roots();
+    let mut cells = Vec::new();
+    blocked(source.space(), &swept.trees[0], roots, |_, wedge, k| {
+        cells.push((*wedge, k));
+    });
+    let mut out = Vec::new();
+    for (wedge, k) in cells {
+        let target = source.segment(k);
+        let (ends, framed) = ([target.right, target.left], target.key >= FRAME);
+        let borders = source.extremal(&wedge);
+        let hits = borders.iter().flat_map(|l| hits(l, ends));
+        let bounds = around(hits.chain([eye.to_f64()]));
+        let [right, left] = [0, 1].map(|k| borders[k].clone());
+        out.push(Tile {
+            halves: vec![right, left.reversed(), PlanLine::through(ends[0], ends[1])],
+            fan: Vec::new(),
+            bounds,
+            framed,
+        });
+    }
+    out
+}
+
+/// The funnels through a window.
+fn window_tiles(window: usize, swept: &mut Swept<RegionLines>) -> Vec<Tile> {
+    let source = &mut swept.source;
+    let tree = &swept.trees[window];
+    let roots = source.roots(window, tree);
+    let mut cells = Vec::new();
+    blocked(source.space(), tree, roots, |_, cone, k| {
+        cells.push((cone.clone(), k));
+    });
+    let w = source.windows()[window];
+    let mut out = Vec::new();
+    for (cone, k) in cells {
+        let target = source.segment(k);
+        // The lines come from the left of the way from their right to their left.
+        let (ends, framed) = ([target.right, target.left], target.key >= FRAME);
+        let fan = source.extremal(&cone);
+        let hits = fan
+            .iter()
+            .flat_map(|l| hits(l, [w.a, w.b]).into_iter().chain(hits(l, ends)));
+        let bounds = around(hits);
+        out.push(Tile {
+            halves: vec![
+                PlanLine::through(w.b, w.a),
+                PlanLine::through(ends[0], ends[1]),
+            ],
+            fan,
+            bounds,
+            framed,
+        });
+    }
+    out
 }
 
 /// Keys of the frame's sides.
@@ -119,106 +169,29 @@ fn close<S: Source>(swept: &mut Swept<S>, frame: &Rect) {
     }
 }
 
-/// The ends of what a key stands for, and whether it is the frame.
-fn target(plan: &Plan, frame: &Rect, key: u32) -> ([Point2; 2], bool) {
-    match plan.pieces().get(key as usize) {
-        Some(&piece) => (piece, false),
-        None => {
-            let k = (key - FRAME) as usize;
-            let corners = frame.corners();
-            ([corners[k], corners[(k + 1) % 4]], true)
-        }
-    }
-}
-
-/// Where a line meets a segment, rounded.
-fn meet(line: &PlanLine, [p, q]: [Point2; 2]) -> [f64; 2] {
+/// About where a line meets a segment, to half a step; both ends if that is not clear.
+fn hits(line: &PlanLine, [p, q]: [Point2; 2]) -> [[f64; 2]; 2] {
     let l = line.rounded();
     let (p, q) = (p.to_f64(), q.to_f64());
     let at = |p: [f64; 2]| l[0] * p[0] + l[1] * p[1] + l[2];
     let (u, v) = (at(p), at(q));
-    let t = if u == v {
-        0.0
-    } else {
-        (u / (u - v)).clamp(0.0, 1.0)
-    };
-    [0, 1].map(|k| p[k] + t * (q[k] - p[k]))
+    let [dx, dy] = [0, 1].map(|k| q[k] - p[k]);
+    // Values are right to 2^-27 of the line's length: with an angle above 2^-16 that is 2^-11 steps.
+    let clear = l[0].hypot(l[1]) * dx.hypot(dy) / (1 << 16) as f64;
+    if (u - v).abs() <= clear {
+        return [p, q];
+    }
+    let t = (u / (u - v)).clamp(0.0, 1.0);
+    [[p[0] + t * dx, p[1] + t * dy]; 2]
 }
 
-/// A funnel: line i meets facets i - 1 and i.
-struct Tile {
-    lines: Vec<PlanLine>,
-    facets: Vec<([f64; 2], Half)>,
-    window: [Point2; 2],
-    target: [Point2; 2],
-}
-
-impl Tile {
-    fn outline(&self) -> Vec<[f64; 2]> {
-        // The left chain from window to target, and the right one back: clockwise.
-        let mut out = self.chain(Half::Positive);
-        let right = self.chain(Half::Negative);
-        out.extend(right.into_iter().rev());
-        out.reverse();
-        out
-    }
-
-    /// The points that bound the lines on one side, from the window to the target.
-    fn chain(&self, side: Half) -> Vec<[f64; 2]> {
-        let n = self.facets.len();
-        let on = |i: usize| self.facets[i % n].1 == side;
-        let Some(start) = (0..n).find(|&i| on(i) && !on(i + n - 1)) else {
-            return Vec::new();
-        };
-        let count = (start..start + n).take_while(|&i| on(i)).count();
-        let mut lines: Vec<&PlanLine> = (start..=start + count)
-            .map(|i| &self.lines[i % n])
-            .collect();
-        let mut pivots: Vec<[f64; 2]> = (start..start + count)
-            .map(|i| self.facets[i % n].0)
-            .collect();
-        // Lines of the left chain turn left on their way, those of the right chain right.
-        let (first, last) = (lines[0].rounded(), lines[count].rounded());
-        let turn = first[0] * last[1] - first[1] * last[0];
-        if (turn < 0.0) == (side == Half::Positive) {
-            lines.reverse();
-            pivots.reverse();
-        }
-        let beyond = |p: [f64; 2]| -> f64 { -turn_of(self.window, p) };
-        // The line of the target may cross the window: what counts is where a line inside the funnel starts.
-        let start = meet(&PlanLine::sum(&self.lines), self.window);
-        let sign = -turn_of(self.target, start);
-        let behind = |p: [f64; 2]| turn_of(self.target, p) * sign;
-        let skip = pivots.iter().take_while(|&&p| beyond(p) <= 0.0).count();
-        let keep = pivots
-            .iter()
-            .take_while(|&&p| behind(p) < 0.0)
-            .count()
-            .max(skip);
-        let mut out = vec![self.end(lines[skip], self.window, &pivots, skip)];
-        out.extend(&pivots[skip..keep]);
-        out.push(self.end(lines[keep], self.target, &pivots, keep));
-        out
-    }
-
-    /// Where a line of a chain ends on a segment; one that runs along it ends where it turns.
-    fn end(
-        &self,
-        line: &PlanLine,
-        segment: [Point2; 2],
-        pivots: &[[f64; 2]],
-        at: usize,
-    ) -> [f64; 2] {
-        let along = segment.iter().all(|&p| line.side(p) == 0);
-        if along && !pivots.is_empty() {
-            return pivots[at.min(pivots.len() - 1)];
-        }
-        meet(line, segment)
-    }
-}
-
-/// Twice the signed area of the triangle of a segment and a point.
-fn turn_of([a, b]: [Point2; 2], p: [f64; 2]) -> f64 {
-    let (a, b) = (a.to_f64(), b.to_f64());
-    (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
+/// The box around some points, a step wider.
+fn around(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2] {
+    let start = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    points.into_iter().fold(start, |[low, high], p| {
+        [
+            [0, 1].map(|k| low[k].min(p[k] - 1.0)),
+            [0, 1].map(|k| high[k].max(p[k] + 1.0)),
+        ]
+    })
 }

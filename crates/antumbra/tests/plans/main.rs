@@ -2,6 +2,7 @@
 
 mod cases;
 mod glass;
+mod isovist;
 mod ladder;
 mod mutual;
 mod rays;

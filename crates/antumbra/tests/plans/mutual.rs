@@ -1,13 +1,13 @@
-//! Whether cells see each other, and the area that a cell sees, against the oracle and against each other.
+//! Whether cells see each other, against the oracle.
 
-use antumbra::plan::{CellShape, Isovist, Plan, PlanCell, Sight, isovist, mutual, mutual_matrix};
+use antumbra::plan::{CellShape, Plan, PlanCell, Sight, mutual, mutual_matrix};
 use antumbra_kernel::Point2;
 use antumbra_testkit::environment::long;
 use antumbra_testkit::flat::{FlatScene, GridPoint, orient2d};
 use antumbra_testkit::random::Random;
 
 use crate::rays::{first, grid, inside};
-use crate::small::{build, build_within, random_cell};
+use crate::small::{build, random_cell};
 
 /// Whether two closed segments share a point.
 fn meet([a, b]: [GridPoint; 2], [c, d]: [GridPoint; 2]) -> bool {
@@ -115,79 +115,4 @@ fn sights_are_mutual_and_no_line_is_missed() {
         }
     }
     assert!(seen > 500 && hidden > 100, "{seen} {hidden}");
-}
-
-/// Whether an isovist holds a point, by its winding; `None` if the point is next to its border.
-fn holds(area: &Isovist, [x, y]: [f64; 2]) -> Option<bool> {
-    let mut winding = 0;
-    for ring in area.polygons.iter().flatten() {
-        for (i, a) in ring.iter().enumerate() {
-            let b = ring[(i + 1) % ring.len()];
-            let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
-            let turn = dx * (y - a[1]) - dy * (x - a[0]);
-            let t = ((x - a[0]) * dx + (y - a[1]) * dy) / (dx * dx + dy * dy);
-            let t = t.clamp(0.0, 1.0);
-            if (a[0] + t * dx - x).hypot(a[1] + t * dy - y) < 0.01 {
-                return None;
-            }
-            if (a[1] <= y) != (b[1] <= y) && (turn > 0.0) == (dy > 0.0) {
-                winding += if dy > 0.0 { 1 } else { -1 };
-            }
-        }
-    }
-    Some(winding != 0)
-}
-
-/// A point that is in line with no two corners lies in the isovist of a cell if the two see each other, and only then.
-#[test]
-fn isovists_hold_the_points_that_are_seen() {
-    const SCALE: i64 = 101;
-    let mut random = Random::new(22);
-    let (mut seen, mut hidden) = (0, 0);
-    for scene in 0..if long() { 4000 } else { 250 } {
-        let size = [3, 5, 9][random.index(3)];
-        let count = 1 + random.index(9);
-        let mut p = || [0; 2].map(|_| SCALE * random.integer(-size, size));
-        let mut segments: Vec<[GridPoint; 2]> = (0..count).map(|_| [p(), p()]).collect();
-        let far = 12 * SCALE;
-        segments.push([[-far, far], [far, far]]);
-        segments.push([[-far, -far], [far, -far]]);
-        let plan = build_within(4000.0, &segments, 1);
-        let outline = random_cell(&mut random, size, scene % 4);
-        let outline: Vec<[f64; 2]> = outline
-            .iter()
-            .map(|p| p.map(|v| v * SCALE as f64))
-            .collect();
-        let cell = PlanCell::new(&plan, &outline).expect("a cell");
-        let area = isovist(&plan, &cell);
-        let corners = cell.parts.iter().flat_map(|p| p.corners().to_vec());
-        let ends: Vec<GridPoint> = plan
-            .pieces()
-            .iter()
-            .flatten()
-            .copied()
-            .chain(corners)
-            .map(grid)
-            .collect();
-        for _ in 0..40 {
-            let place = [0; 2].map(|_| random.integer(-far, far));
-            let in_line =
-                |u: &GridPoint| ends.iter().any(|&v| *u != v && orient2d(*u, v, place) == 0);
-            let place_f64 = place.map(|v| v as f64);
-            let Some(held) = holds(&area, place_f64).filter(|_| !ends.iter().any(in_line)) else {
-                continue;
-            };
-            let point = PlanCell::new(&plan, &[place_f64]).expect("a point");
-            let sight = mutual(&plan, &cell, &point);
-            assert_eq!(
-                held,
-                sight.is_some(),
-                "{place:?} and {:?}, {segments:?}",
-                cell.parts
-            );
-            seen += usize::from(held);
-            hidden += usize::from(!held);
-        }
-    }
-    assert!(seen > 1000 && hidden > 1000, "{seen} {hidden}");
 }
