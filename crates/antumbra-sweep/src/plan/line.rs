@@ -108,19 +108,21 @@ impl PlanLine {
     #[must_use]
     pub fn sum(lines: &[Self]) -> Self {
         let most = lines.iter().map(Self::bits).max().unwrap_or(0);
+        if lines.iter().any(|line| matches!(line, Self::Big(_))) {
+            let mut total = [IBig::ZERO, IBig::ZERO, IBig::ZERO];
+            for line in lines {
+                for (t, c) in total.iter_mut().zip(line.big()) {
+                    *t += c << (most - line.bits());
+                }
+            }
+            return Self::new(total);
+        }
+        // A line that meets the grid is at most 25 bits longer than its direction: 89 bits each.
         let mut total = [0_i128; 3];
         for line in lines {
-            let Self::Small(l) = line else {
-                let mut total = [IBig::ZERO, IBig::ZERO, IBig::ZERO];
-                for line in lines {
-                    for (t, c) in total.iter_mut().zip(line.big()) {
-                        *t += c << (most - line.bits());
-                    }
-                }
-                return Self::new(total);
-            };
-            for k in 0..3 {
-                total[k] += i128::from(l[k]) << (most - line.bits());
+            let Self::Small(l) = line else { continue };
+            for (t, c) in total.iter_mut().zip(l) {
+                *t += i128::from(*c) << (most - line.bits());
             }
         }
         match total.map(i64::try_from) {
