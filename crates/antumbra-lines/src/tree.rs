@@ -9,7 +9,7 @@ mod insert;
 mod test;
 mod visit;
 
-use crate::line_space::{Half, Occluder};
+use crate::line_space::{Cut, Half, LineSpace, Occluder, Wall};
 
 /// What a leaf says about its lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,6 +121,22 @@ impl<P: Copy + Eq> OcclusionTree<P> {
         match slot {
             Slot::Root => self.root,
             Slot::Side(node, half) => self.nodes[node as usize].children[half.index()],
+        }
+    }
+
+    /// Puts the parts of a piece on both sides of a node on a stack, the negative one on top.
+    #[inline]
+    fn part<S>(&self, space: &mut S, node: u32, piece: S::Piece, stack: &mut Vec<(Slot, S::Piece)>)
+    where
+        S: LineSpace<Plane = P>,
+    {
+        let plane = self.nodes[node as usize].plane;
+        match space.cut(piece, plane, Wall(node)) {
+            Cut::Whole(half, piece) => stack.push((Slot::Side(node, half), piece)),
+            Cut::Parts([negative, positive]) => {
+                stack.push((Slot::Side(node, Half::Positive), positive));
+                stack.push((Slot::Side(node, Half::Negative), negative));
+            }
         }
     }
 

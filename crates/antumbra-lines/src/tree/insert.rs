@@ -38,16 +38,7 @@ impl<P: Copy + Eq> OcclusionTree<P> {
                 continue;
             }
             match self.child(slot) {
-                Child::Node(node) => {
-                    let plane = self.nodes[node as usize].plane;
-                    match space.cut(piece, plane, Wall(node)) {
-                        Cut::Whole(half, piece) => stack.push((Slot::Side(node, half), piece)),
-                        Cut::Parts([negative, positive]) => {
-                            stack.push((Slot::Side(node, Half::Positive), positive));
-                            stack.push((Slot::Side(node, Half::Negative), negative));
-                        }
-                    }
-                }
+                Child::Node(node) => self.part(space, node, piece, &mut stack),
                 Child::Leaf(Leaf::Outside) => space.discard(piece),
                 Child::Leaf(Leaf::Open) => {
                     let far = far(space, &piece);

@@ -1,7 +1,7 @@
 //! Tests: whether an occluder or a region would be seen, exactly or without splitting.
 
 use super::{Child, Leaf, OcclusionTree, STACK, Slot, Visibility};
-use crate::line_space::{Cut, DepthSpace, Half, LineSpace, Occluder, Order, Position, Wall};
+use crate::line_space::{DepthSpace, Half, LineSpace, Occluder, Order, Position};
 
 impl<P: Copy + Eq> OcclusionTree<P> {
     /// Whether an occluder would be seen, were it inserted. Exact; stops as soon as the answer is
@@ -67,14 +67,7 @@ impl<P: Copy + Eq> OcclusionTree<P> {
             let state = match self.child(slot) {
                 _ if self.reach(slot) < near => Visibility::Invisible,
                 Child::Node(node) => {
-                    let plane = self.nodes[node as usize].plane;
-                    match space.cut(piece, plane, Wall(node)) {
-                        Cut::Whole(half, piece) => stack.push((Slot::Side(node, half), piece)),
-                        Cut::Parts([negative, positive]) => {
-                            stack.push((Slot::Side(node, Half::Positive), positive));
-                            stack.push((Slot::Side(node, Half::Negative), negative));
-                        }
-                    }
+                    self.part(space, node, piece, &mut stack);
                     continue;
                 }
                 Child::Leaf(Leaf::Open) => Visibility::Full,
